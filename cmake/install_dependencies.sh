@@ -1,0 +1,95 @@
+#!/bin/sh
+# Installs the packages that are missing, and only those, on Debian 12, Ubuntu 22.04 and Ubuntu 24.04.
+#
+#   cmake/install_dependencies.sh PURPOSE...     purposes: library tool tests benchmarks fftw
+#
+# Root is asked for (by sudo) only when something is missing. PCL_FFT_GROUND_SKIP_INSTALL=1 skips the whole step.
+set -eu
+
+fail() {
+  echo "install_dependencies.sh: $*" >&2
+  exit 1
+}
+
+# commands_of PURPOSE: what must be on the PATH, as command:package, whoever put it there.
+commands_of() {
+  [ "$1" != library ] || echo "c++:g++ cc:gcc cmake:cmake make:make pkg-config:pkg-config"
+}
+
+# packages_of PURPOSE: development packages. The picture writer draws its text in the DejaVu font.
+packages_of() {
+  case "$1" in
+    library) echo "libpcl-dev libeigen3-dev libboost-dev libflann-dev" ;;
+    tool) echo "libboost-program-options-dev libcairo2-dev nlohmann-json3-dev fonts-dejavu-core" ;;
+    tests) echo "libgtest-dev libgmock-dev" ;;
+    benchmarks) echo "libbenchmark-dev" ;;
+    fftw) echo "libfftw3-dev" ;;
+    *) fail "unknown purpose '$1' (allowed: library tool tests benchmarks fftw)" ;;
+  esac
+}
+
+# missing_commands COMMAND:PACKAGE...: the packages of the commands that are not on the PATH.
+missing_commands() {
+  for pair in "$@"; do
+    command -v "${pair%%:*}" >/dev/null 2>&1 || echo "${pair#*:}"
+  done
+}
+
+# missing_packages PACKAGE...: those that are not installed.
+missing_packages() {
+  installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null || true)
+  for package in "$@"; do
+    echo "$installed" | grep -qxF "installed $package" || echo "$package"
+  done
+}
+
+is_debian_family() {
+  command -v apt-get >/dev/null 2>&1 && command -v dpkg-query >/dev/null 2>&1 && [ -r /etc/os-release ] &&
+    (. /etc/os-release && case " ${ID:-} ${ID_LIKE:-} " in *" debian "* | *" ubuntu "*) true ;; *) false ;; esac)
+}
+
+explain_other_system() {
+  cat >&2 <<'TEXT'
+install_dependencies.sh: this system is neither Debian nor Ubuntu, so nothing was installed. Please install
+  a C and a C++17 compiler, CMake >= 3.16, make, pkg-config
+  PCL >= 1.12 (common, filters, sample_consensus; io for the command; search, segmentation for tests and examples)
+  Eigen >= 3.4, Boost >= 1.71 (headers; program_options for the command), FLANN
+  Cairo, nlohmann-json >= 3.9 and a sans-serif font for the command; GoogleTest >= 1.10 for the tests
+and run the same command again with PCL_FFT_GROUND_SKIP_INSTALL=1 in the environment.
+TEXT
+  exit 1
+}
+
+# as_root COMMAND...: runs it directly, or through sudo.
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  else
+    sudo "$@"
+  fi
+}
+
+install_packages() {
+  echo "Missing packages, to be installed with apt-get: $*"
+  [ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null 2>&1 ||
+    fail "root is needed to install them, and there is no sudo; as root, run: apt-get install --no-install-recommends $*"
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get update -q
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "$@" ||
+    fail "apt-get could not install: $*"
+}
+
+[ $# -gt 0 ] || fail "say what for: library tool tests benchmarks fftw"
+commands=""
+packages=""
+for purpose in "$@"; do
+  commands="$commands $(commands_of "$purpose")"
+  packages="$packages $(packages_of "$purpose")"
+done
+[ "${PCL_FFT_GROUND_SKIP_INSTALL:-0}" != 1 ] || exit 0
+is_debian_family || explain_other_system
+
+# shellcheck disable=SC2086  # lists of words
+missing="$(missing_commands $commands) $(missing_packages $packages)"
+# shellcheck disable=SC2086
+set -- $missing
+[ $# -eq 0 ] || install_packages "$@"

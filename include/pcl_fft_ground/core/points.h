@@ -1,0 +1,13 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pcl_fft_ground::core {
+
+/// Points of a scan, one per column: x, y, z [m]. All coordinates are finite.
+using Points = Eigen::Matrix3Xf;
+
+/// Read-only view of points.
+using PointsView = Eigen::Ref<const Points>;
+
+}  // namespace pcl_fft_ground::core

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <pcl/PointIndices.h>
+#include <pcl/filters/filter_indices.h>
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "pcl_fft_ground/core/frame.h"
+#include "pcl_fft_ground/core/labels.h"
+#include "pcl_fft_ground/core/point_statistics.h"
+#include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/export.h"
+
+namespace pcl_fft_ground {
+
+using core::UpEstimation;
+using core::Yaw;
+
+/** A filter that splits a scan into ground and objects: the interface that all methods share.
+ *
+ * As a `pcl::FilterIndices` it keeps the objects, ready for clustering, and with `setNegative(true)` the
+ * ground; segment() gives both. Points that are not finite are in neither and always among the removed ones.
+ * A point so far from all others that it cannot belong to the scan (core::findFarPoints()) counts as an
+ * object and does not influence the rest. The input is never modified, and equal input gives equal output bit
+ * for bit.
+ *
+ * Where the data does not let the method work, nothing throws: PCL_ERROR and getError() say why, and every
+ * finite point counts as ground. Setters throw `pcl::PCLException` on values out of range.
+ */
+template <typename PointT>
+class GroundSegmentation : public pcl::FilterIndices<PointT> {
+ public:
+  using PointCloud = typename pcl::Filter<PointT>::PointCloud;
+  using Ptr = pcl::shared_ptr<GroundSegmentation<PointT>>;
+  using ConstPtr = pcl::shared_ptr<const GroundSegmentation<PointT>>;
+
+  GroundSegmentation(const GroundSegmentation& other);
+  GroundSegmentation& operator=(const GroundSegmentation& other);
+
+  /** Splits the input into ground and objects.
+   * \param[out] ground,objects indices into the input cloud, in the order of setIndices(); old content is
+   * discarded and the header is that of the cloud. `setNegative` has no influence. Both empty without an
+   * input.
+   */
+  void segment(pcl::PointIndices& ground, pcl::PointIndices& objects);
+
+  /// Reference direction of positive elevation in the frame of the input, any finite length above 0; kept
+  /// normalised.
+  void setUpDirection(const Eigen::Vector3d& up);
+  Eigen::Vector3d getUpDirection() const { return frame_parameters_.up_direction; }
+
+  /// How the direction of positive elevation is found, see core::UpEstimation.
+  void setUpEstimation(UpEstimation estimation) { frame_parameters_.up_estimation = estimation; }
+  UpEstimation getUpEstimation() const { return frame_parameters_.up_estimation; }
+
+  /// How the elevation grid is turned about the vertical, see core::Yaw.
+  void setYaw(Yaw yaw) { frame_parameters_.yaw = yaw; }
+  Yaw getYaw() const { return frame_parameters_.yaw; }
+
+  /// Frame of the last run: brings input points into the level frame whose +z is up. Identity before the
+  /// first run.
+  const Eigen::Isometry3d& getFrame() const { return frame_from_input_; }
+
+  /// Points of the last run that lie too far from all others to belong to the scan; they count as objects.
+  const pcl::Indices& getFarPoints() const { return far_points_; }
+
+  /// Why the last run could not segment its input; empty if it could.
+  const std::string& getError() const { return error_; }
+
+  /// What the last run found remarkable, a sentence each; the same went to PCL_WARN.
+  const std::vector<std::string>& getWarnings() const { return warnings_; }
+
+ protected:
+  GroundSegmentation(const std::string& name, const core::FrameParameters& frame_parameters,
+                     bool extract_removed_indices);
+
+  /** Labels points as ground or object: what a method has to bring.
+   * \param points the finite points of the input in the level frame; may be empty
+   * \param frame_from_input the transform that brought them there
+   * \return a label per point
+   * \throws std::exception if the data does not let the method work
+   */
+  virtual core::Labels labelPoints(const core::Points& points, const Eigen::Isometry3d& frame_from_input) = 0;
+
+  /// Adds a sentence to getWarnings() and logs it.
+  void warn(const std::string& sentence);
+
+  /// Throws `pcl::PCLException` naming parameter, value and range unless `valid`.
+  void requireParameter(bool valid, const std::string& parameter, double value,
+                        const std::string& range) const;
+
+  void applyFilter(pcl::Indices& indices) override;
+  void applyFilter(PointCloud& output) override;
+
+  using pcl::FilterIndices<PointT>::initCompute;
+  using pcl::FilterIndices<PointT>::deinitCompute;
+  using pcl::FilterIndices<PointT>::input_;
+  using pcl::FilterIndices<PointT>::negative_;
+  using pcl::FilterIndices<PointT>::keep_organized_;
+  using pcl::FilterIndices<PointT>::user_filter_value_;
+  using pcl::FilterIndices<PointT>::removed_indices_;
+  using pcl::Filter<PointT>::extract_removed_indices_;
+  using pcl::Filter<PointT>::filter_name_;
+  using pcl::PCLBase<PointT>::indices_;
+  using pcl::PCLBase<PointT>::fake_indices_;
+
+ private:
+  core::Label keptLabel() const { return negative_ ? core::Label::GROUND : core::Label::OBJECT; }
+  core::Labels computeLabels();
+  core::Labels labelAroundFarPoints(core::Points points, const std::vector<Eigen::Index>& far);
+  core::Labels labelScan(const core::Points& points, const core::PointStatistics& statistics);
+  void reportError(const std::string& sentence);
+  void copyPoints(const pcl::Indices& indices, PointCloud& output) const;
+  void copyOrganized(const core::Labels& labels, PointCloud& output) const;
+
+  core::FrameParameters frame_parameters_;
+  Eigen::Isometry3d frame_from_input_ = Eigen::Isometry3d::Identity();
+  pcl::Indices far_points_;
+  std::string error_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace pcl_fft_ground
+
+#ifdef PCL_NO_PRECOMPILE
+#include <pcl_fft_ground/impl/ground_segmentation.hpp>
+#endif

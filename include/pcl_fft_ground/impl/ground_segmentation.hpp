@@ -1,0 +1,235 @@
+#pragma once
+
+#include <pcl/console/print.h>
+#include <pcl/exceptions.h>
+
+#include <algorithm>
+#include <exception>
+#include <sstream>
+#include <utility>
+
+#include <pcl/common/impl/io.hpp>
+#include <pcl/filters/impl/filter_indices.hpp>
+#include <pcl/impl/pcl_base.hpp>
+
+#include "pcl_fft_ground/core/far_points.h"
+#include "pcl_fft_ground/ground_segmentation.h"
+#include "pcl_fft_ground/impl/indexed_points.hpp"
+
+namespace pcl_fft_ground {
+namespace impl {
+
+/// The indices of the points whose label the predicate takes, in the order of the list.
+template <typename PointT, typename Predicate>
+pcl::Indices indicesWhere(const IndexedPoints<PointT>& points, const core::Labels& labels,
+                          const Predicate& takes) {
+  const auto count = static_cast<std::size_t>(std::count_if(labels.begin(), labels.end(), takes));
+  pcl::Indices indices(count + 1);  // one more to write to: half of all branches would be mispredicted
+  std::size_t end = 0;
+  for (std::size_t n = 0; n < labels.size(); ++n) {
+    indices[end] = points.index(n);
+    end += takes(labels[n]) ? 1 : 0;
+    end = std::min(end, count);
+  }
+  indices.resize(count);
+  return indices;
+}
+
+}  // namespace impl
+
+template <typename PointT>
+GroundSegmentation<PointT>::GroundSegmentation(const std::string& name,
+                                               const core::FrameParameters& frame_parameters,
+                                               bool extract_removed_indices)
+    : pcl::FilterIndices<PointT>(extract_removed_indices), frame_parameters_(frame_parameters) {
+  filter_name_ = name;
+}
+
+template <typename PointT>
+GroundSegmentation<PointT>::GroundSegmentation(const GroundSegmentation& other)
+    : pcl::FilterIndices<PointT>(other),
+      frame_parameters_(other.frame_parameters_),
+      frame_from_input_(other.frame_from_input_),
+      far_points_(other.far_points_),
+      error_(other.error_),
+      warnings_(other.warnings_) {
+  if (fake_indices_) indices_.reset();  // PCLBase shares its list of all points, which a run may resize
+}
+
+template <typename PointT>
+GroundSegmentation<PointT>& GroundSegmentation<PointT>::operator=(const GroundSegmentation& other) {
+  if (this == &other) return *this;
+  pcl::FilterIndices<PointT>::operator=(other);
+  if (fake_indices_) indices_.reset();
+  frame_parameters_ = other.frame_parameters_;
+  frame_from_input_ = other.frame_from_input_;
+  far_points_ = other.far_points_;
+  error_ = other.error_;
+  warnings_ = other.warnings_;
+  return *this;
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::segment(pcl::PointIndices& ground, pcl::PointIndices& objects) {
+  ground = objects = pcl::PointIndices();
+  if (!initCompute()) return;
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  const core::Labels labels = computeLabels();
+  ground.header = objects.header = input_->header;
+  ground.indices = impl::indicesWhere(points, labels, [](core::Label l) { return l == core::Label::GROUND; });
+  objects.indices =
+      impl::indicesWhere(points, labels, [](core::Label l) { return l == core::Label::OBJECT; });
+  deinitCompute();
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::setUpDirection(const Eigen::Vector3d& up) {
+  const double length = up.stableNorm();
+  requireParameter(up.allFinite() && length > 0, "length of the up direction", length,
+                   "a finite number above 0");
+  frame_parameters_.up_direction = (up / up.cwiseAbs().maxCoeff()).normalized();
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::warn(const std::string& sentence) {
+  warnings_.push_back(sentence);
+  PCL_WARN("[pcl_fft_ground::%s] %s\n", filter_name_.c_str(), sentence.c_str());
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::requireParameter(bool valid, const std::string& parameter, double value,
+                                                  const std::string& range) const {
+  if (valid) return;
+  std::ostringstream message;
+  message << filter_name_ << ": " << parameter << " is " << value << ", must be " << range;
+  throw pcl::PCLException(message.str());
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::applyFilter(pcl::Indices& indices) {
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  const core::Labels labels = computeLabels();
+  const core::Label kept = keptLabel();
+  // Both lists are made before either is handed out: the output may be the vector that was given as input.
+  pcl::Indices result = impl::indicesWhere(points, labels, [kept](core::Label l) { return l == kept; });
+  removed_indices_.reset(new pcl::Indices);
+  if (extract_removed_indices_)
+    *removed_indices_ = impl::indicesWhere(points, labels, [kept](core::Label l) { return l != kept; });
+  indices = std::move(result);
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::applyFilter(PointCloud& output) {
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  const core::Labels labels = computeLabels();
+  const core::Label kept = keptLabel();
+  removed_indices_.reset(new pcl::Indices);
+  if (extract_removed_indices_)
+    *removed_indices_ = impl::indicesWhere(points, labels, [kept](core::Label l) { return l != kept; });
+  const bool invalid_indices = labels.empty() && points.size() > 0;
+  if (keep_organized_ && !invalid_indices)
+    copyOrganized(labels, output);
+  else
+    copyPoints(impl::indicesWhere(points, labels, [kept](core::Label l) { return l == kept; }), output);
+}
+
+/// A label per index; none at all if an index is invalid.
+template <typename PointT>
+core::Labels GroundSegmentation<PointT>::computeLabels() {
+  warnings_.clear();
+  error_.clear();
+  far_points_.clear();
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  if (!points.areValid()) {
+    reportError("the indices reach beyond the cloud of " + std::to_string(input_->size()) + " points");
+    return {};
+  }
+  core::Points finite = points.finitePoints();
+  const std::vector<std::size_t> positions = points.finitePositions(static_cast<std::size_t>(finite.cols()));
+  const core::PointStatistics statistics = core::summarise(finite);
+  const std::vector<Eigen::Index> far = core::findFarPoints(finite, statistics);
+  const core::Labels labels =
+      far.empty() ? labelScan(finite, statistics) : labelAroundFarPoints(std::move(finite), far);
+  for (const Eigen::Index n : far)
+    far_points_.push_back(points.index(positions.empty() ? static_cast<std::size_t>(n) : positions[n]));
+  if (!far.empty())
+    warn(std::to_string(far.size()) +
+         " points lie too far from all others to belong to the scan: left out as objects");
+  if (positions.empty()) return labels;
+
+  core::Labels scattered(points.size(), core::Label::NEITHER);
+  for (std::size_t n = 0; n < labels.size(); ++n) scattered[positions[n]] = labels[n];
+  return scattered;
+}
+
+/// Labels the far points as objects and the others as if the far ones were not there.
+template <typename PointT>
+core::Labels GroundSegmentation<PointT>::labelAroundFarPoints(core::Points points,
+                                                              const std::vector<Eigen::Index>& far) {
+  const Eigen::Index count = points.cols();
+  std::vector<bool> is_far(static_cast<std::size_t>(count), false);
+  for (const Eigen::Index n : far) is_far[static_cast<std::size_t>(n)] = true;
+  Eigen::Index near_count = 0;
+  for (Eigen::Index n = 0; n < count; ++n)
+    if (!is_far[static_cast<std::size_t>(n)]) points.col(near_count++) = points.col(n);
+  points.conservativeResize(Eigen::NoChange, near_count);
+
+  const core::Labels near_labels = labelScan(points, core::summarise(points));
+  core::Labels labels(static_cast<std::size_t>(count), core::Label::OBJECT);
+  auto next = near_labels.begin();
+  for (std::size_t n = 0; n < labels.size(); ++n)
+    if (!is_far[n]) labels[n] = *next++;
+  return labels;
+}
+
+/// Levels the points and lets the method label them; all ground where it cannot.
+template <typename PointT>
+core::Labels GroundSegmentation<PointT>::labelScan(const core::Points& points,
+                                                   const core::PointStatistics& statistics) {
+  frame_from_input_ = core::estimateFrame(points, statistics, frame_parameters_);
+  try {
+    return labelPoints(core::transformed(points, frame_from_input_), frame_from_input_);
+  } catch (const std::exception& problem) {
+    reportError(problem.what());
+    return core::Labels(static_cast<std::size_t>(points.cols()), core::Label::GROUND);
+  }
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::reportError(const std::string& sentence) {
+  error_ = sentence;
+  PCL_ERROR("[pcl_fft_ground::%s] %s\n", filter_name_.c_str(), sentence.c_str());
+}
+
+/// The points of the indices, one after the other; the width and height of the input if they are all of its
+/// points.
+template <typename PointT>
+void GroundSegmentation<PointT>::copyPoints(const pcl::Indices& indices, PointCloud& output) const {
+  bool complete = indices.size() == input_->size();
+  for (std::size_t n = 0; complete && n < indices.size(); ++n)
+    complete = static_cast<std::size_t>(indices[n]) == n;
+  output.resize(indices.size());
+  for (std::size_t n = 0; n < indices.size(); ++n)
+    output[n] = (*input_)[static_cast<std::size_t>(indices[n])];
+  output.width = complete ? input_->width : static_cast<std::uint32_t>(indices.size());
+  output.height = complete ? input_->height : 1;
+  output.is_dense = input_->is_dense;
+}
+
+/// The whole input, x, y and z of what is not kept replaced by the user's value.
+template <typename PointT>
+void GroundSegmentation<PointT>::copyOrganized(const core::Labels& labels, PointCloud& output) const {
+  output = *input_;
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  for (std::size_t n = 0; n < labels.size(); ++n) {
+    if (labels[n] == keptLabel()) continue;
+    PointT& point = output[static_cast<std::size_t>(points.index(n))];
+    point.x = point.y = point.z = user_filter_value_;
+  }
+  if (!labels.empty() && !std::isfinite(user_filter_value_)) output.is_dense = false;
+}
+
+}  // namespace pcl_fft_ground
+
+#define PCL_INSTANTIATE_GroundSegmentation(T) \
+  template class PCL_FFT_GROUND_FILTERS_EXPORT pcl_fft_ground::GroundSegmentation<T>;

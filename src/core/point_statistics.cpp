@@ -1,0 +1,61 @@
+#include "pcl_fft_ground/core/point_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace pcl_fft_ground::core {
+namespace {
+
+/// As many bits as let n products of two such numbers be summed in 63 bits, and no more than 20: a millionth.
+int quantisationBits(Eigen::Index n) {
+  return std::clamp((62 - std::ilogb(static_cast<double>(n))) / 2, 1, 20);
+}
+
+/// Sums of integer coordinates and of their products.
+struct IntegerMoments {
+  std::int64_t x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+
+  void add(std::int64_t i, std::int64_t j, std::int64_t k) {
+    x += i, y += j, z += k;
+    xx += i * i, xy += i * j, xz += i * k;
+    yy += j * j, yz += j * k, zz += k * k;
+  }
+  Eigen::Vector3d mean(double n) const { return Eigen::Vector3d(x, y, z) / n; }
+  Eigen::Matrix3d covariance(double n) const {
+    Eigen::Matrix3d products;
+    products << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    return products / n - mean(n) * mean(n).transpose();
+  }
+};
+
+}  // namespace
+
+PointStatistics summarise(const PointsView& points) {
+  if (points.cols() == 0) return {};
+  Eigen::Vector3f low = points.col(0), high = low;
+  for (Eigen::Index i = 1; i < points.cols(); ++i) {
+    low = low.cwiseMin(points.col(i));
+    high = high.cwiseMax(points.col(i));
+  }
+  PointStatistics result;
+  result.mean = result.low = low.cast<double>();
+  result.high = high.cast<double>();
+  const double extent = (result.high - result.low).maxCoeff();
+  if (extent == 0) return result;
+
+  const double steps = std::ldexp(1.0, quantisationBits(points.cols())) / extent;
+  IntegerMoments moments;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d q = (points.col(i).cast<double>() - result.low) * steps;
+    moments.add(static_cast<std::int64_t>(q.x()), static_cast<std::int64_t>(q.y()),
+                static_cast<std::int64_t>(q.z()));
+  }
+  const auto n = static_cast<double>(points.cols());
+  // The casts round down: half a step brings the mean back to the middle.
+  result.mean = result.low + (moments.mean(n).array() + 0.5).matrix() / steps;
+  result.covariance = moments.covariance(n) / (steps * steps);
+  return result;
+}
+
+}  // namespace pcl_fft_ground::core

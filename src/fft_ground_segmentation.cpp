@@ -1,0 +1,6 @@
+#include <pcl/point_types.h>
+#include <pcl/impl/instantiate.hpp>
+
+#include "pcl_fft_ground/impl/fft_ground_segmentation.hpp"
+
+PCL_INSTANTIATE(FFTGroundSegmentation, PCL_XYZ_POINT_TYPES)

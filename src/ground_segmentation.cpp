@@ -1,0 +1,6 @@
+#include <pcl/point_types.h>
+#include <pcl/impl/instantiate.hpp>
+
+#include "pcl_fft_ground/impl/ground_segmentation.hpp"
+
+PCL_INSTANTIATE(GroundSegmentation, PCL_XYZ_POINT_TYPES)
