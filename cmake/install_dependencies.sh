@@ -21,7 +21,7 @@ packages_of() {
   case "$1" in
     library) echo "libpcl-dev libeigen3-dev libboost-dev libflann-dev" ;;
     tool) echo "libboost-program-options-dev libcairo2-dev nlohmann-json3-dev fonts-dejavu-core" ;;
-    tests) echo "libgtest-dev libgmock-dev" ;;
+    tests) echo "libgtest-dev" ;;
     benchmarks) echo "libbenchmark-dev" ;;
     fftw) echo "libfftw3-dev" ;;
     *) fail "unknown purpose '$1' (allowed: library tool tests benchmarks fftw)" ;;

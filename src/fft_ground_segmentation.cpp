@@ -3,4 +3,5 @@
 
 #include "pcl_fft_ground/impl/fft_ground_segmentation.hpp"
 
+PCL_INSTANTIATE(ExternGroundSegmentation, PCL_XYZ_POINT_TYPES)
 PCL_INSTANTIATE(FFTGroundSegmentation, PCL_XYZ_POINT_TYPES)

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "hull_filter.h"
+#include <limits>
+#include <utility>
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -46,19 +46,6 @@ double rectangleArea(const std::vector<Eigen::Vector2d>& hull, double angle) {
   return (high - low).prod();
 }
 
-/// Heights between which the vertical line at x lies inside of a convex polygon.
-std::pair<double, double> insideHeights(const std::vector<Eigen::Vector2d>& hull, double x) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Eigen::Vector2d &a = hull[i], &b = hull[(i + 1) % hull.size()];
-    if (x < std::min(a.x(), b.x()) || x > std::max(a.x(), b.x()) || a.x() == b.x()) continue;
-    const double y = a.y() + (b.y() - a.y()) * (x - a.x()) / (b.x() - a.x());
-    low = std::min(low, y);
-    high = std::max(high, y);
-  }
-  return {low, high};
-}
-
 }  // namespace
 
 std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points) {
@@ -85,23 +72,6 @@ double minimumAreaRectangleAngle(const std::vector<Eigen::Vector2d>& hull) {
     best_area = std::min(best_area, area);
   }
   return best_angle;
-}
-
-HullFilter::HullFilter(const std::vector<Eigen::Vector2d>& hull) {
-  inside_.fill({0.0, 0.0});
-  if (hull.size() < 3) return;
-  const auto [left, right] = std::minmax_element(hull.begin(), hull.end(), lowerX);
-  left_ = left->x();
-  strips_per_metre_ = STRIPS / (right->x() - left_);
-  if (!std::isfinite(strips_per_metre_)) strips_per_metre_ = 0;
-  std::pair<double, double> here = insideHeights(hull, left_);
-  for (int strip = 0; strip < STRIPS; ++strip) {
-    const std::pair<double, double> next = insideHeights(hull, left_ + (strip + 1) / strips_per_metre_);
-    // The polygon is convex: what is inside at both ends of the strip is inside all over it.
-    inside_[static_cast<std::size_t>(strip)] = {std::max(here.first, next.first),
-                                                std::min(here.second, next.second)};
-    here = next;
-  }
 }
 
 }  // namespace pcl_fft_ground::core

@@ -87,9 +87,10 @@ Cutoff selectCutoff(const std::vector<SpectrumPeak>& peaks, double cell_size, do
   const auto peak = std::find_if(peaks.begin(), peaks.end(), [&](const SpectrumPeak& p) {
     return largestObject(p.radius, cell_size) <= max_object_size;
   });
-  if (peak != peaks.end()) return {peak->radius, largestObject(peak->radius, cell_size), *peak};
+  if (peak != peaks.end())
+    return {peak->radius, largestObject(peak->radius, cell_size), *peak, CutoffSource::PEAK};
   const double fallback = std::min(M_SQRT2, 2 * cell_size / max_object_size);
-  return {fallback, largestObject(fallback, cell_size), std::nullopt};
+  return {fallback, largestObject(fallback, cell_size), std::nullopt, CutoffSource::FALLBACK};
 }
 
 }  // namespace pcl_fft_ground::core

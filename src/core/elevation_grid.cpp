@@ -24,21 +24,11 @@ double ElevationGrid::emptyCellShare() const {
   return 1.0 - static_cast<double>(observed.count()) / static_cast<double>(observed.size());
 }
 
-HorizontalBounds horizontalBounds(const PointsView& points) {
-  if (points.cols() == 0) return {};
-  Eigen::Array2f low = points.col(0).head<2>(), high = low;
-  for (Eigen::Index i = 1; i < points.cols(); ++i) {
-    low = low.min(points.col(i).head<2>().array());
-    high = high.max(points.col(i).head<2>().array());
-  }
-  return {low.cast<double>(), high.cast<double>()};
-}
-
-GridGeometry gridAround(const HorizontalBounds& bounds, double cell_size) {
-  const Eigen::Array2d extent = bounds.high - bounds.low;
+GridGeometry gridAround(const Bounds& bounds, double cell_size) {
+  const Eigen::Array2d extent = (bounds.high - bounds.low).head<2>();
   const Eigen::Array2d cells = (extent / cell_size).floor() + 1;
   if (!(cells.prod() <= MAX_CELLS)) throwTooManyCells(extent, cell_size);
-  return {bounds.low.matrix(), cell_size, static_cast<Eigen::Index>(cells.x()),
+  return {bounds.low.head<2>().matrix(), cell_size, static_cast<Eigen::Index>(cells.x()),
           static_cast<Eigen::Index>(cells.y())};
 }
 

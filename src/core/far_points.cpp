@@ -15,8 +15,8 @@ constexpr double REACH = 3.0;                  // how many box lengths outside o
 bool isCompact(const PointStatistics& statistics, Eigen::Index count) {
   if (count < 1000) return false;
   const double deviation = std::sqrt(statistics.covariance.diagonal().maxCoeff());
-  const Eigen::Vector3d reach =
-      (statistics.high - statistics.mean).cwiseMax(statistics.mean - statistics.low);
+  const Eigen::Array3d mean = statistics.mean;
+  const Eigen::Array3d reach = (statistics.bounds.high - mean).max(mean - statistics.bounds.low);
   return reach.maxCoeff() <= 4.0 * deviation;
 }
 

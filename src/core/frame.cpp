@@ -41,11 +41,8 @@ double principalAngle(const Eigen::Matrix2d& covariance) {
 /// Angle [rad] of the smallest rectangle around the points, seen along up.
 double rectangleAngle(const PointsView& points, const Eigen::Vector3d& centre,
                       const Eigen::Matrix3d& level_from_input) {
-  const Eigen::Matrix<double, 2, 3> horizontal = level_from_input.topRows<2>();
-  const auto project = [&](Eigen::Index i) -> Eigen::Vector2d {
-    return horizontal * (points.col(i).cast<double>() - centre);
-  };
-  return minimumAreaRectangleAngle(convexHull(outermostPoints(points.cols(), project)));
+  const HorizontalProjection projection{level_from_input.topRows<2>(), centre};
+  return minimumAreaRectangleAngle(convexHull(outermostPoints(points, projection)));
 }
 
 double estimateYaw(const PointsView& points, const PointStatistics& statistics,

@@ -13,7 +13,7 @@ Cutoff chooseCutoff(const LowPassGround& ground, const LowPassParameters& parame
   if (!parameters.cutoff_frequency)
     return selectCutoff(ground.peaks, parameters.cell_size, ground.max_object_size);
   const double f_c = *parameters.cutoff_frequency;
-  return {f_c, largestObject(f_c, parameters.cell_size), std::nullopt};
+  return {f_c, largestObject(f_c, parameters.cell_size), std::nullopt, CutoffSource::GIVEN};
 }
 
 }  // namespace
@@ -22,9 +22,9 @@ LowPassGround estimateLowPassGround(const PointsView& points, const Eigen::Isome
                                     const LowPassParameters& parameters) {
   LowPassGround ground;
   if (points.cols() == 0) return ground;
-  const HorizontalBounds bounds = horizontalBounds(points);
+  const Bounds bounds = boundsOf(points);
   ground.elevation = rasteriseHighest(points, gridAround(bounds, parameters.cell_size));  // Sec. IV-A
-  ground.extent = (bounds.high - bounds.low).minCoeff();
+  ground.extent = (bounds.high - bounds.low).head<2>().minCoeff();
   ground.max_object_size =
       parameters.max_object_size.value_or(parameters.relative_max_object_size * ground.extent);
 

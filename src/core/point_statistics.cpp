@@ -29,31 +29,55 @@ struct IntegerMoments {
   }
 };
 
+/// Four points at a time fill whole vector registers.
+using FourPoints = Eigen::Array<float, 12, 1>;
+
+FourPoints fourTimes(const Eigen::Array3f& values) {
+  return values.replicate<4, 1>();
+}
+
+FourPoints fourPointsAt(const PointsView& points, Eigen::Index i) {
+  return Eigen::Map<const FourPoints>(points.data() + 3 * i);
+}
+
 }  // namespace
 
-PointStatistics summarise(const PointsView& points) {
+Bounds boundsOf(const PointsView& points) {
   if (points.cols() == 0) return {};
-  Eigen::Vector3f low = points.col(0), high = low;
-  for (Eigen::Index i = 1; i < points.cols(); ++i) {
-    low = low.cwiseMin(points.col(i));
-    high = high.cwiseMax(points.col(i));
+  FourPoints lows = fourTimes(points.col(0)), highs = lows;
+  const Eigen::Index fours = points.cols() / 4 * 4;
+  for (Eigen::Index i = 0; i < fours; i += 4) {
+    const FourPoints p = fourPointsAt(points, i);
+    lows = lows.min(p);
+    highs = highs.max(p);
   }
+  Eigen::Array3f low = lows.reshaped(3, 4).rowwise().minCoeff(),
+                 high = highs.reshaped(3, 4).rowwise().maxCoeff();
+  for (Eigen::Index i = fours; i < points.cols(); ++i) {
+    low = low.min(points.col(i).array());
+    high = high.max(points.col(i).array());
+  }
+  return {low.cast<double>(), high.cast<double>()};
+}
+
+PointStatistics summarise(const PointsView& points) {
   PointStatistics result;
-  result.mean = result.low = low.cast<double>();
-  result.high = high.cast<double>();
-  const double extent = (result.high - result.low).maxCoeff();
+  result.bounds = boundsOf(points);
+  result.mean = result.bounds.low;
+  const double extent = (result.bounds.high - result.bounds.low).maxCoeff();
   if (extent == 0) return result;
 
   const double steps = std::ldexp(1.0, quantisationBits(points.cols())) / extent;
+  const Eigen::Array3d low = result.bounds.low;
   IntegerMoments moments;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d q = (points.col(i).cast<double>() - result.low) * steps;
+    const Eigen::Array3d q = (points.col(i).array().cast<double>() - low) * steps;
     moments.add(static_cast<std::int64_t>(q.x()), static_cast<std::int64_t>(q.y()),
                 static_cast<std::int64_t>(q.z()));
   }
   const auto n = static_cast<double>(points.cols());
   // The casts round down: half a step brings the mean back to the middle.
-  result.mean = result.low + (moments.mean(n).array() + 0.5).matrix() / steps;
+  result.mean = low + (moments.mean(n).array() + 0.5) / steps;
   result.covariance = moments.covariance(n) / (steps * steps);
   return result;
 }

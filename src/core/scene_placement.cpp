@@ -81,7 +81,7 @@ PlacedObject placeAmphora(const Scene& scene, Random& random) {
   const double length = 0.3 + 0.7 * rank * rank;  // small ones are the most frequent
   const TurnedBody amphora = makeAmphora(length, random);
   Repose repose;
-  repose.xy = restingPlace(scene, 0.6, random);
+  repose.xy = restingPlace(scene, 0.35, random);
   repose.yaw = random.uniform(0.0, kTwoPi);
   repose.length = length;
   repose.radius = 0.17 * length;
@@ -102,7 +102,7 @@ PlacedObject placePipe(const Scene& scene, Random& random) {
   const double radius = random.uniform(0.04, 0.13);
   const bool socket = random.chance(0.4);
   Repose repose;
-  repose.xy = restingPlace(scene, 0.3, random);
+  repose.xy = restingPlace(scene, 0.15, random);
   const bool astray = random.chance(0.3);
   const double stray = random.uniform(0.0, kTwoPi);
   const double heading = random.normal(kHeading);

@@ -34,11 +34,19 @@ struct PeakParameters {
 PCL_FFT_GROUND_CORE_EXPORT std::vector<SpectrumPeak> findSpectrumPeaks(const Eigen::ArrayXXd& magnitude,
                                                                        const PeakParameters& parameters);
 
+/// Where a cut-off frequency comes from.
+enum class CutoffSource {
+  PEAK,      ///< a peak of the spectrum
+  FALLBACK,  ///< the largest object alone, as no peak qualified
+  GIVEN,     ///< the user
+};
+
 /// A cut-off frequency and how it came about.
 struct Cutoff {
   double frequency = 0;              ///< f_c, ratio of the Nyquist range, (0, sqrt 2]
   double object_size = 0;            ///< m_c = 2 cell_size / f_c [m], eq. (4): larger objects count as ground
-  std::optional<SpectrumPeak> peak;  ///< the peak that gave it; none if no peak qualified or f_c was given
+  std::optional<SpectrumPeak> peak;  ///< the peak that gave it, if one did
+  CutoffSource source = CutoffSource::FALLBACK;
 };
 
 /// The size in metres of the largest object that a cut-off frequency keeps out of the ground, eq. (4).
@@ -46,7 +54,7 @@ PCL_FFT_GROUND_CORE_EXPORT double largestObject(double cutoff, double cell_size)
 
 /** The cut-off frequency of Sec. IV-B2: the peak closest to DC whose m_c does not exceed the largest object.
  *
- * Where no peak qualifies, f_c = min(sqrt 2, 2 cell_size / max_object_size), and Cutoff::peak is empty.
+ * Where no peak qualifies, f_c = min(sqrt 2, 2 cell_size / max_object_size), and the source is FALLBACK.
  *
  * \param peaks sorted by radius, see findSpectrumPeaks()
  * \param cell_size [m], > 0

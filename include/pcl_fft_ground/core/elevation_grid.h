@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "pcl_fft_ground/core/export.h"
+#include "pcl_fft_ground/core/point_statistics.h"
 #include "pcl_fft_ground/core/points.h"
 
 namespace pcl_fft_ground::core {
@@ -26,26 +27,17 @@ struct ElevationGrid {
   Mask observed;              ///< true where the cell holds a point
 
   /// Share of the cells without a point, in [0, 1]; 0 for a grid without cells.
-  double emptyCellShare() const;
+  PCL_FFT_GROUND_CORE_EXPORT double emptyCellShare() const;
 };
 
 /// The largest number of cells that a grid may have.
 constexpr double MAX_CELLS = 1e8;
 
-/// Smallest and largest x and y of level points [m].
-struct HorizontalBounds {
-  Eigen::Array2d low = Eigen::Array2d::Zero();
-  Eigen::Array2d high = Eigen::Array2d::Zero();
-};
-
-/// Horizontal bounds of points in the level frame; all zero for none.
-PCL_FFT_GROUND_CORE_EXPORT HorizontalBounds horizontalBounds(const PointsView& points);
-
-/** The smallest grid that covers the bounds: its lower corner is theirs.
+/** The smallest grid that covers the bounds horizontally: its lower corner is theirs.
  * \param cell_size side of a cell [m], > 0
  * \throws std::length_error if the grid would have more than MAX_CELLS cells
  */
-PCL_FFT_GROUND_CORE_EXPORT GridGeometry gridAround(const HorizontalBounds& bounds, double cell_size);
+PCL_FFT_GROUND_CORE_EXPORT GridGeometry gridAround(const Bounds& bounds, double cell_size);
 
 /** The highest point of each cell; empty cells take the height of the nearest observed cell
  * (fillEmptyCells()). \param points points in the level frame, at least one, all inside of the grid

@@ -7,10 +7,18 @@
 
 namespace pcl_fft_ground::core {
 
+/// Smallest and largest coordinate of each axis [m].
+struct Bounds {
+  Eigen::Array3d low = Eigen::Array3d::Zero();
+  Eigen::Array3d high = Eigen::Array3d::Zero();
+};
+
+/// Axis-aligned bounds of points; all zero for none. O(n).
+PCL_FFT_GROUND_CORE_EXPORT Bounds boundsOf(const PointsView& points);
+
 /// Where the points of a scan lie, in the frame of the points.
 struct PointStatistics {
-  Eigen::Vector3d low = Eigen::Vector3d::Zero();         ///< smallest coordinate of each axis [m]
-  Eigen::Vector3d high = Eigen::Vector3d::Zero();        ///< largest coordinate of each axis [m]
+  Bounds bounds;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();        ///< centroid [m]
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance [m^2]
 };

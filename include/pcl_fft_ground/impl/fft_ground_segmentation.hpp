@@ -95,6 +95,7 @@ template <typename PointT>
 core::Labels FFTGroundSegmentation<PointT>::labelPoints(const core::Points& points,
                                                         const Eigen::Isometry3d& frame_from_input) {
   ground_ = core::LowPassGround();
+  if (points.cols() == 0) return {};
   ground_ = core::estimateLowPassGround(points, frame_from_input, parameters_);
   warnOfDoubts();
   return core::labelByHeight(points, ground_.surface, height_tolerance_);

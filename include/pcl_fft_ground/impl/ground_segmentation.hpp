@@ -29,7 +29,6 @@ pcl::Indices indicesWhere(const IndexedPoints<PointT>& points, const core::Label
   for (std::size_t n = 0; n < labels.size(); ++n) {
     indices[end] = points.index(n);
     end += takes(labels[n]) ? 1 : 0;
-    end = std::min(end, count);
   }
   indices.resize(count);
   return indices;
@@ -141,6 +140,7 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   far_points_.clear();
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   if (!points.areValid()) {
+    labelScan(core::Points(), core::PointStatistics());  // forgets the last run
     reportError("the indices reach beyond the cloud of " + std::to_string(input_->size()) + " points");
     return {};
   }
@@ -155,7 +155,7 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   if (!far.empty())
     warn(std::to_string(far.size()) +
          " points lie too far from all others to belong to the scan: left out as objects");
-  if (positions.empty()) return labels;
+  if (labels.size() == points.size()) return labels;
 
   core::Labels scattered(points.size(), core::Label::NEITHER);
   for (std::size_t n = 0; n < labels.size(); ++n) scattered[positions[n]] = labels[n];
@@ -233,3 +233,7 @@ void GroundSegmentation<PointT>::copyOrganized(const core::Labels& labels, Point
 
 #define PCL_INSTANTIATE_GroundSegmentation(T) \
   template class PCL_FFT_GROUND_FILTERS_EXPORT pcl_fft_ground::GroundSegmentation<T>;
+
+// For the sources of the siblings: their base is instantiated, and exported, in a source of its own.
+#define PCL_INSTANTIATE_ExternGroundSegmentation(T) \
+  extern template class PCL_FFT_GROUND_FILTERS_EXPORT pcl_fft_ground::GroundSegmentation<T>;

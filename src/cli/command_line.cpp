@@ -1,0 +1,63 @@
+#include "command_line.h"
+
+#include <cctype>
+
+#include "errors.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+bool isOptionName(const std::string& word) {
+  return word.size() > 2 && word.compare(0, 2, "--") == 0 && word.find('=') == std::string::npos;
+}
+
+/// "-1", "-.5", "-inf", "-nan": the parser would take these for options.
+bool isNegativeNumber(const std::string& word) {
+  if (word.size() < 2 || word[0] != '-') return false;
+  return std::isdigit(static_cast<unsigned char>(word[1])) != 0 || word[1] == '.' || word == "-inf" ||
+         word == "-nan";
+}
+
+/// Ties negative numbers, and the three values of a direction, to the option before them.
+std::vector<std::string> tieValues(const std::string& command, const std::vector<std::string>& arguments) {
+  std::vector<std::string> tied;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& word = arguments[i];
+    if (word == "--up-direction") {
+      if (i + 3 >= arguments.size())
+        throw UsageError(command + ": --up-direction: allowed are three numbers, X Y Z");
+      tied.push_back(word + "=" + arguments[i + 1] + " " + arguments[i + 2] + " " + arguments[i + 3]);
+      i += 3;
+    } else if (isOptionName(word) && i + 1 < arguments.size() && isNegativeNumber(arguments[i + 1])) {
+      tied.push_back(word + "=" + arguments[++i]);
+    } else {
+      tied.push_back(word);
+    }
+  }
+  return tied;
+}
+
+}  // namespace
+
+po::variables_map parseArguments(const std::string& command, const std::vector<std::string>& arguments,
+                                 const po::options_description& options,
+                                 const po::positional_options_description& positional) {
+  constexpr int STYLE = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+  try {
+    po::variables_map values;
+    po::store(po::command_line_parser(tieValues(command, arguments))
+                  .options(options)
+                  .positional(positional)
+                  .style(STYLE)
+                  .run(),
+              values);
+    po::notify(values);
+    return values;
+  } catch (const po::error& error) {
+    throw UsageError(command + ": " + error.what());
+  }
+}
+
+}  // namespace pcl_fft_ground::cli

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <string>
+#include <vector>
+
+namespace pcl_fft_ground::cli {
+
+/// Columns of a help text, and of the explanations in it.
+constexpr unsigned HELP_WIDTH = 110;
+constexpr unsigned HELP_TEXT_WIDTH = 60;
+
+/** Parses the words behind a command in the manner that all commands share.
+ *
+ * `--name value` and `--name=value`, negative numbers too; `--up-direction X Y Z` takes three words and
+ * yields one, "X Y Z". Names are written out in full.
+ *
+ * \param command name of the command, for the messages
+ * \param positional the options that take the words without a name
+ * \throws UsageError for anything else
+ */
+boost::program_options::variables_map parseArguments(
+    const std::string& command, const std::vector<std::string>& arguments,
+    const boost::program_options::options_description& options,
+    const boost::program_options::positional_options_description& positional);
+
+}  // namespace pcl_fft_ground::cli

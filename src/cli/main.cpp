@@ -1,0 +1,72 @@
+#include <pcl/console/print.h>
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "errors.h"
+#include "pcl_fft_ground/version.h"
+#include "segment_command.h"
+#include "simulate_command.h"
+
+namespace {
+
+constexpr const char* HELP = R"(Usage: pcl_fft_ground COMMAND ...
+
+Takes the ground out of 3D scans in the frequency domain.
+
+Commands:
+  segment  CLOUD -o DIR              split a scan into ground, objects and segments
+  simulate wreck|pipes|reef -o FILE  make a labelled scan of the sea floor
+
+`pcl_fft_ground COMMAND --help` explains a command. Also: --help, --version.
+
+Try it:
+  pcl_fft_ground simulate wreck -o wreck.pcd
+  pcl_fft_ground segment wreck.pcd -o result --max-object-size 1
+)";
+
+int run(const std::vector<std::string>& words) {
+  using namespace pcl_fft_ground::cli;
+  const std::string command = words.empty() ? "" : words.front();
+  const std::vector<std::string> arguments(words.begin() + std::min<std::ptrdiff_t>(1, words.size()),
+                                           words.end());
+  if (command == "segment") {
+    runSegment(arguments);
+  } else if (command == "simulate") {
+    runSimulate(arguments);
+  } else if (command == "--help" || command == "-h" || command == "help") {
+    std::cout << HELP;
+  } else if (command == "--version") {
+    std::cout << "pcl_fft_ground " << PCL_FFT_GROUND_VERSION << '\n';
+  } else {
+    throw UsageError((command.empty() ? "no command given" : "command '" + command + "'") +
+                     std::string(": allowed is segment or simulate; see pcl_fft_ground --help"));
+  }
+  return 0;
+}
+
+/// An error is one line, whatever it was made of.
+int report(std::string message, int status) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::cerr << "pcl_fft_ground: " << message << std::endl;
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  try {
+    return run({argv + 1, argv + argc});
+  } catch (const pcl_fft_ground::cli::UsageError& error) {
+    return report(error.what(), 2);
+  } catch (const std::bad_alloc&) {
+    return report("not enough memory for this work", 1);
+  } catch (const std::exception& error) {
+    return report(error.what(), 1);
+  }
+}

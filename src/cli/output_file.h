@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace pcl_fft_ground::cli {
+
+/// Lets `write` make a file at a temporary path, in the same folder under a hidden name, and gives it its
+/// real name when it is complete: so a file appears whole or not at all, and an older one stays until then.
+/// The temporary file is removed if anything fails.
+/// \param path  a new file or a regular one, in a folder that exists
+/// \throws WorkError naming `path` and the reason, whatever `write` threw
+void writeWhole(const std::string& path, const std::function<void(const std::string& temporary)>& write);
+
+/// Writes these bytes as a file, whole or not at all.
+/// \throws WorkError naming the file
+void writeText(const std::string& path, std::string_view content);
+
+/// Makes a folder and those above it, as far as they are missing.
+/// \throws WorkError naming the folder, for one if `path` or a part of it is a file
+void makeDirectory(const std::string& path);
+
+}  // namespace pcl_fft_ground::cli

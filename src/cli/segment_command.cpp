@@ -1,0 +1,149 @@
+#include "segment_command.h"
+
+#include <cmath>
+#include <iostream>
+
+#include "command_line.h"
+#include "errors.h"
+#include "output_file.h"
+#include "progress.h"
+#include "segment_outputs.h"
+#include "segment_report.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+namespace po = boost::program_options;
+using nlohmann::ordered_json;
+
+constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground segment CLOUD -o DIR [options]
+
+Splits a scan into ground and objects, and the objects into segments. CLOUD is a PCD or PLY file or text with
+x y z [label] in each line; coordinates are in metres, and the ground is what lies low. All that most scans
+need is the size of the largest object, --max-object-size, and a cell size of two or three times the spacing
+of the points.
+
+)";
+
+constexpr const char* HELP_AFTER = R"(
+DIR is made if need be and receives
+  labelled.pcd        all points with label (0 ground, 1 object, 2 neither) and segment (1.. by size, 0 none)
+  ground.pcd objects.pcd  the two apart          segments.csv  place, extent and height of each segment
+  ground_surface.pcd ground_surface.asc  the estimated ground       report.json  parameters, counts, scores
+  elevation.png ground.png spectrum.png labels.png segments.png    pictures
+Where CLOUD has a label field, TPR, TNR and F1 of the objects are printed.
+
+Examples:
+  pcl_fft_ground segment wreck.pcd -o result --max-object-size 1
+  pcl_fft_ground segment street.ply -o result --cell-size 0.5 --max-object-size 10 --height-tolerance 0.2
+
+Exit status: 0 done, 1 the work failed, 2 wrong usage.
+)";
+
+po::options_description commandOptions() {
+  po::options_description options("General", HELP_WIDTH, HELP_TEXT_WIDTH);
+  auto add = options.add_options();
+  add("output,o", po::value<std::string>()->value_name("DIR"),
+      "directory for the results; other files in it stay");
+  add("leaf-size", po::value<double>()->value_name("M"),
+      "side of the voxels that cluster the objects [m], above 0 (the cell size)");
+  add("min-cluster-size", po::value<long long>()->value_name("N"),
+      "points of the smallest segment, at least 1 (10)");
+  add("max-cluster-size", po::value<long long>()->value_name("N"),
+      "points of the largest segment (no limit)");
+  add("json", po::bool_switch(), "print the report as JSON");
+  add("quiet", po::bool_switch(), "print nothing but errors");
+  add("help,h", po::bool_switch(), "show this text");
+  return options;
+}
+
+std::size_t clusterSize(const po::variables_map& values, const std::string& option, std::size_t fallback) {
+  if (values.count(option) == 0) return fallback;
+  const auto size = values[option].as<long long>();
+  if (size < 1)
+    throw UsageError("--" + option + " " + std::to_string(size) +
+                     ": allowed is a whole number of at least 1");
+  return static_cast<std::size_t>(size);
+}
+
+ClusterParameters clusterParameters(const po::variables_map& values, double cell_size) {
+  ClusterParameters parameters;
+  parameters.leaf_size = values.count("leaf-size") != 0 ? values["leaf-size"].as<double>() : cell_size;
+  if (!std::isfinite(parameters.leaf_size) || parameters.leaf_size <= 0)
+    throw UsageError("--leaf-size: leaf size is " + std::to_string(parameters.leaf_size) +
+                     ", must be a finite number of metres above 0");
+  parameters.min_cluster_size = clusterSize(values, "min-cluster-size", parameters.min_cluster_size);
+  parameters.max_cluster_size = clusterSize(values, "max-cluster-size", parameters.max_cluster_size);
+  return parameters;
+}
+
+ordered_json describeClusterParameters(ordered_json parameters, const ClusterParameters& clusters,
+                                       const po::variables_map& values) {
+  const auto source = [&](const std::string& option, const char* otherwise) {
+    return values.count(option) != 0 ? "option" : otherwise;
+  };
+  parameters["leaf-size"] = {{"value", clusters.leaf_size}, {"from", source("leaf-size", "cell-size")}};
+  parameters["min-cluster-size"] = {{"value", clusters.min_cluster_size},
+                                    {"from", source("min-cluster-size", "default")}};
+  if (values.count("max-cluster-size") != 0)
+    parameters["max-cluster-size"] = {{"value", clusters.max_cluster_size}, {"from", "option"}};
+  return parameters;
+}
+
+std::string required(const po::variables_map& values, const std::string& option, const std::string& what) {
+  if (values.count(option) == 0) throw UsageError("segment: no " + what);
+  return values[option].as<std::string>();
+}
+
+void segment(const po::variables_map& values) {
+  const std::string input = required(values, "cloud", "cloud given: name a PCD, PLY or text file");
+  const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
+  Segmenter segmenter = makeSegmenter(values);
+  const ClusterParameters clusters = clusterParameters(values, segmenter.cell_size);
+  const bool quiet = values["quiet"].as<bool>();
+
+  Progress progress(quiet);
+  progress.begin("read", "Reading " + input);
+  const Cloud cloud = readCloud(input);
+  progress.begin("segment", "Separating ground from objects");
+  Segmentation segmentation = segmentCloud(input, cloud, segmenter);
+  progress.begin("cluster", "Clustering the objects");
+  clusterObjects(cloud, clusters, segmentation);
+  progress.begin("write", "Writing to " + directory);
+  makeDirectory(directory);
+  writeClouds(directory, cloud, segmentation);
+  writeGroundSurface(directory, cloud, segmentation);
+  writeSegments(directory, cloud, segmentation);
+  progress.begin("pictures", "Drawing pictures to " + directory);
+  writePictures(directory, segmenter, segmentation, cloud);
+  progress.end();
+
+  const ordered_json parameters =
+      describeClusterParameters(describeParameters(segmenter, values), clusters, values);
+  const ordered_json report = makeReport(input, cloud, segmenter, segmentation, parameters, progress);
+  writeText(directory + "/report.json", report.dump(2) + "\n");
+  for (const std::string& warning : segmenter.filter->getWarnings())
+    if (!quiet) std::cerr << "pcl_fft_ground: warning: " << input << ": " << warning << '\n';
+  if (values["json"].as<bool>())
+    std::cout << report.dump(2) << '\n';
+  else if (!quiet)
+    printSummary(std::cout, report);
+}
+
+}  // namespace
+
+void runSegment(const std::vector<std::string>& arguments) {
+  po::options_description shown;
+  shown.add(segmenterOptions()).add(commandOptions());
+  po::options_description all;
+  all.add(shown).add_options()("cloud", po::value<std::string>());
+  po::positional_options_description positional;
+  positional.add("cloud", 1);
+  const po::variables_map values = parseArguments("segment", arguments, all, positional);
+  if (values["help"].as<bool>())
+    std::cout << HELP_BEFORE << shown << HELP_AFTER;
+  else
+    segment(values);
+}
+
+}  // namespace pcl_fft_ground::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+
+#include "progress.h"
+#include "segmentation.h"
+
+namespace pcl_fft_ground::cli {
+
+/// The content of report.json. Numbers that do not exist (a rate without objects) are null.
+nlohmann::ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segmenter& segmenter,
+                                  const Segmentation& segmentation, nlohmann::ordered_json parameters,
+                                  const Progress& progress);
+
+/// The few lines that a person wants to read of a report.
+void printSummary(std::ostream& out, const nlohmann::ordered_json& report);
+
+}  // namespace pcl_fft_ground::cli

@@ -1,0 +1,11 @@
+# The core is for those who have Eigen but not PCL: no header below HEADERS may include PCL or Boost.
+file(GLOB_RECURSE headers "${HEADERS}/*.h")
+if(NOT headers)
+  message(FATAL_ERROR "no headers below ${HEADERS}")
+endif()
+foreach(header IN LISTS headers)
+  file(STRINGS "${header}" foreign REGEX "#[ \t]*include[ \t]*[<\"](pcl|boost|flann)/")
+  if(foreign)
+    message(FATAL_ERROR "${header}: ${foreign}")
+  endif()
+endforeach()
