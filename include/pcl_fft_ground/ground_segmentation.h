@@ -110,7 +110,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   core::Label keptLabel() const { return negative_ ? core::Label::GROUND : core::Label::OBJECT; }
   core::Labels computeLabels();
   core::Labels labelAroundFarPoints(core::Points points, const std::vector<Eigen::Index>& far);
-  core::Labels labelScan(const core::Points& points, const core::PointStatistics& statistics);
+  core::Labels labelScan(core::Points points, const core::PointStatistics& statistics);
   void reportError(const std::string& sentence);
   void copyPoints(const pcl::Indices& indices, PointCloud& output) const;
   void copyOrganized(const core::Labels& labels, PointCloud& output) const;

@@ -27,7 +27,7 @@ std::pair<double, double> trimmedRange(const PointsView& points, Eigen::Index ax
   const auto cut = static_cast<std::ptrdiff_t>(std::max<Eigen::Index>(1, points.cols() / CUT_OFF_ONE_IN));
   const auto low = values.begin() + cut, high = values.end() - 1 - cut;
   std::nth_element(values.begin(), low, values.end());
-  std::nth_element(low, high, values.end());
+  std::nth_element(low + 1, high, values.end());  // must not move *low
   return {*low, *high};
 }
 

@@ -34,13 +34,22 @@ int largestPrimeFactor(int n) {
 struct Fft::Engine {
   Eigen::FFT<double> fft;
 
+  // Kissfft writes to a null pointer at length 1, where there is nothing to do.
   void forward(const Complex* in, Complex* out, int length) {
+    if (length == 1) {
+      *out = *in;
+      return;
+    }
 #ifdef PCL_FFT_GROUND_WITH_FFTW
     const std::lock_guard<std::mutex> lock(plannerMutex());
 #endif
     fft.fwd(out, in, length);
   }
   void inverse(const Complex* in, Complex* out, int length) {
+    if (length == 1) {
+      *out = *in;
+      return;
+    }
 #ifdef PCL_FFT_GROUND_WITH_FFTW
     const std::lock_guard<std::mutex> lock(plannerMutex());
 #endif

@@ -27,6 +27,9 @@ NearestRows nearestRowsInColumns(const Mask& observed) {
   return nearest;
 }
 
+/// Holds the product of a squared and a plain distance along the longest grid: 1e8 cells in a line.
+__extension__ using Wide = __int128;
+
 /// A column and the squared distance of its nearest observed cell to the row at hand.
 struct Parabola {
   std::int64_t column;
@@ -39,7 +42,7 @@ struct Parabola {
 bool isHidden(const Parabola& a, const Parabola& b, const Parabola& c) {
   // The lower branch leaves a for b where 2 j (b - a) > (b^2 + h_b) - (a^2 + h_a), and likewise b for c.
   const auto rise = [](const Parabola& p, const Parabola& q) {
-    return q.column * q.column + q.height - p.column * p.column - p.height;
+    return Wide(q.column * q.column + q.height - p.column * p.column - p.height);
   };
   return rise(b, c) * (b.column - a.column) <= rise(a, b) * (c.column - b.column);
 }

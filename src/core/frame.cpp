@@ -29,8 +29,10 @@ Eigen::Vector3d estimateUp(const Eigen::Matrix3d& covariance, const FrameParamet
 
 /// The smallest rotation that turns a unit vector on to +z.
 Eigen::Matrix3d levelFromInput(const Eigen::Vector3d& up) {
-  if (up.z() < -1 + 1e-12) return Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const double horizontal = up.head<2>().norm();
+  if (horizontal == 0) return Eigen::Vector3d(1, up.z() < 0 ? -1 : 1, up.z() < 0 ? -1 : 1).asDiagonal();
+  const Eigen::Vector3d axis(up.y() / horizontal, -up.x() / horizontal, 0);
+  return Eigen::AngleAxisd(std::atan2(horizontal, up.z()), axis).toRotationMatrix();
 }
 
 /// Angle [rad] of the main horizontal axis, (-pi/2, pi/2].
@@ -74,13 +76,12 @@ Eigen::Isometry3d estimateFrame(const PointsView& points, const PointStatistics&
   return frame_from_input;
 }
 
-Points transformed(const PointsView& points, const Eigen::Isometry3d& target_from_source) {
-  Points result(3, points.cols());
+Points transformed(Points points, const Eigen::Isometry3d& target_from_source) {
   const Eigen::Matrix3d rotation = target_from_source.linear();
   const Eigen::Vector3d translation = target_from_source.translation();
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    result.col(i) = (rotation * points.col(i).cast<double>() + translation).cast<float>();
-  return result;
+    points.col(i) = (rotation * points.col(i).cast<double>() + translation).cast<float>();
+  return points;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -40,6 +40,22 @@ FourPoints fourPointsAt(const PointsView& points, Eigen::Index i) {
   return Eigen::Map<const FourPoints>(points.data() + 3 * i);
 }
 
+/// Moments of the points counted in steps from the lower corner.
+IntegerMoments integerMoments(const PointsView& points, const Eigen::Array3d& low, float steps_per_metre) {
+  IntegerMoments moments;
+  const FourPoints lows = fourTimes(low.cast<float>());
+  const Eigen::Index fours = points.cols() / 4 * 4;
+  for (Eigen::Index i = 0; i < fours; i += 4) {
+    const Eigen::Array<int, 12, 1> q = ((fourPointsAt(points, i) - lows) * steps_per_metre).cast<int>();
+    for (Eigen::Index k = 0; k < 12; k += 3) moments.add(q[k], q[k + 1], q[k + 2]);
+  }
+  for (Eigen::Index i = fours; i < points.cols(); ++i) {
+    const Eigen::Array3i q = ((points.col(i).array() - lows.head<3>()) * steps_per_metre).cast<int>();
+    moments.add(q[0], q[1], q[2]);
+  }
+  return moments;
+}
+
 }  // namespace
 
 Bounds boundsOf(const PointsView& points) {
@@ -63,18 +79,13 @@ Bounds boundsOf(const PointsView& points) {
 PointStatistics summarise(const PointsView& points) {
   PointStatistics result;
   result.bounds = boundsOf(points);
-  result.mean = result.bounds.low;
+  const Eigen::Array3d low = result.bounds.low;
+  result.mean = low;
   const double extent = (result.bounds.high - result.bounds.low).maxCoeff();
   if (extent == 0) return result;
 
   const double steps = std::ldexp(1.0, quantisationBits(points.cols())) / extent;
-  const Eigen::Array3d low = result.bounds.low;
-  IntegerMoments moments;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Array3d q = (points.col(i).array().cast<double>() - low) * steps;
-    moments.add(static_cast<std::int64_t>(q.x()), static_cast<std::int64_t>(q.y()),
-                static_cast<std::int64_t>(q.z()));
-  }
+  const IntegerMoments moments = integerMoments(points, low, static_cast<float>(steps));
   const auto n = static_cast<double>(points.cols());
   // The casts round down: half a step brings the mean back to the middle.
   result.mean = low + (moments.mean(n).array() + 0.5) / steps;

@@ -47,8 +47,8 @@ PCL_FFT_GROUND_CORE_EXPORT Eigen::Isometry3d estimateFrame(const PointsView& poi
                                                            const PointStatistics& statistics,
                                                            const FrameParameters& parameters);
 
-/// Applies a rigid transform, computed in double, to points.
-PCL_FFT_GROUND_CORE_EXPORT Points transformed(const PointsView& points,
-                                              const Eigen::Isometry3d& target_from_source);
+/// Applies a rigid transform, computed in double, to points; points that are moved in are transformed in
+/// place.
+PCL_FFT_GROUND_CORE_EXPORT Points transformed(Points points, const Eigen::Isometry3d& target_from_source);
 
 }  // namespace pcl_fft_ground::core

@@ -149,7 +149,7 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   const core::PointStatistics statistics = core::summarise(finite);
   const std::vector<Eigen::Index> far = core::findFarPoints(finite, statistics);
   const core::Labels labels =
-      far.empty() ? labelScan(finite, statistics) : labelAroundFarPoints(std::move(finite), far);
+      far.empty() ? labelScan(std::move(finite), statistics) : labelAroundFarPoints(std::move(finite), far);
   for (const Eigen::Index n : far)
     far_points_.push_back(points.index(positions.empty() ? static_cast<std::size_t>(n) : positions[n]));
   if (!far.empty())
@@ -184,14 +184,15 @@ core::Labels GroundSegmentation<PointT>::labelAroundFarPoints(core::Points point
 
 /// Levels the points and lets the method label them; all ground where it cannot.
 template <typename PointT>
-core::Labels GroundSegmentation<PointT>::labelScan(const core::Points& points,
+core::Labels GroundSegmentation<PointT>::labelScan(core::Points points,
                                                    const core::PointStatistics& statistics) {
+  const auto count = static_cast<std::size_t>(points.cols());
   frame_from_input_ = core::estimateFrame(points, statistics, frame_parameters_);
   try {
-    return labelPoints(core::transformed(points, frame_from_input_), frame_from_input_);
+    return labelPoints(core::transformed(std::move(points), frame_from_input_), frame_from_input_);
   } catch (const std::exception& problem) {
     reportError(problem.what());
-    return core::Labels(static_cast<std::size_t>(points.cols()), core::Label::GROUND);
+    return core::Labels(count, core::Label::GROUND);
   }
 }
 

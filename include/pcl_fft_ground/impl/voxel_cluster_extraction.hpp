@@ -4,7 +4,7 @@
 #include <pcl/exceptions.h>
 
 #include <cmath>
-#include <string>
+#include <sstream>
 
 #include <pcl/impl/pcl_base.hpp>
 
@@ -16,9 +16,12 @@ namespace pcl_fft_ground {
 
 template <typename PointT>
 void VoxelClusterExtraction<PointT>::setLeafSize(double leaf_size) {
-  if (!std::isfinite(leaf_size) || leaf_size <= 0)
-    throw pcl::PCLException("VoxelClusterExtraction: leaf size is " + std::to_string(leaf_size) +
-                            ", must be a finite number of metres above 0");
+  if (!std::isfinite(leaf_size) || leaf_size <= 0) {
+    std::ostringstream message;
+    message << "VoxelClusterExtraction: leaf size is " << leaf_size
+            << ", must be a finite number of metres above 0";
+    throw pcl::PCLException(message.str());
+  }
   leaf_size_ = leaf_size;
 }
 

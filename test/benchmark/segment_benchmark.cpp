@@ -1,0 +1,158 @@
+// Speed of the segmentation and of the clustering beside PCL's own filters on the same points: one core, a
+// simulated wreck of 600,000 points in random order. The last lines give the ratios; single times mean little
+// on a shared machine.
+
+#include <benchmark/benchmark.h>
+#include <pcl/filters/voxel_grid.h>
+#include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/segmentation/extract_clusters.h>
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pcl_fft_ground/core/simulation.h"
+#include "pcl_fft_ground/fft_ground_segmentation.h"
+#include "pcl_fft_ground/voxel_cluster_extraction.h"
+
+namespace {
+
+using Point = pcl::PointXYZ;
+using Cloud = pcl::PointCloud<Point>;
+
+constexpr float CELL = 0.02F;
+
+Cloud::Ptr simulatedWreck() {
+  const pcl_fft_ground::core::SimulatedScan scan = pcl_fft_ground::core::simulateScan({});
+  Cloud::Ptr cloud(new Cloud);
+  for (Eigen::Index i = 0; i < scan.points.cols(); ++i)
+    cloud->push_back({scan.points(0, i), scan.points(1, i), scan.points(2, i)});
+  boost::random::mt19937 random(1);
+  for (std::size_t i = cloud->size(); i > 1; --i)
+    std::swap((*cloud)[i - 1],
+              (*cloud)[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
+  return cloud;
+}
+
+const Cloud::Ptr& scan() {
+  static const Cloud::Ptr cloud = simulatedWreck();
+  return cloud;
+}
+
+const pcl::IndicesPtr& objectIndices() {
+  static const pcl::IndicesPtr indices = [] {
+    pcl_fft_ground::FFTGroundSegmentation<Point> filter;
+    filter.setInputCloud(scan());
+    filter.setMaximumObjectSize(1.0);
+    pcl::IndicesPtr objects(new pcl::Indices);
+    filter.filter(*objects);
+    return objects;
+  }();
+  return indices;
+}
+
+void voxelGrid(benchmark::State& state) {
+  scan();
+  for (auto _ : state) {
+    pcl::VoxelGrid<Point> filter;
+    filter.setInputCloud(scan());
+    filter.setLeafSize(CELL, CELL, CELL);
+    Cloud output;
+    filter.filter(output);
+    benchmark::DoNotOptimize(output.points.data());
+  }
+}
+
+void segmentLowPass(benchmark::State& state) {
+  scan();
+  for (auto _ : state) {
+    pcl_fft_ground::FFTGroundSegmentation<Point> filter;
+    filter.setInputCloud(scan());
+    filter.setCellSize(CELL);
+    filter.setMaximumObjectSize(1.0);
+    pcl::PointIndices ground, objects;
+    filter.segment(ground, objects);
+    benchmark::DoNotOptimize(ground.indices.data());
+    benchmark::DoNotOptimize(objects.indices.data());
+  }
+}
+
+void euclideanClusters(benchmark::State& state) {
+  objectIndices();
+  for (auto _ : state) {
+    pcl::EuclideanClusterExtraction<Point> extraction;
+    extraction.setInputCloud(scan());
+    extraction.setIndices(objectIndices());
+    extraction.setSearchMethod(pcl::search::KdTree<Point>::Ptr(new pcl::search::KdTree<Point>));
+    extraction.setClusterTolerance(CELL);
+    std::vector<pcl::PointIndices> clusters;
+    extraction.extract(clusters);
+    benchmark::DoNotOptimize(clusters.data());
+  }
+}
+
+void voxelClusters(benchmark::State& state) {
+  objectIndices();
+  for (auto _ : state) {
+    pcl_fft_ground::VoxelClusterExtraction<Point> extraction;
+    extraction.setInputCloud(scan());
+    extraction.setIndices(objectIndices());
+    extraction.setLeafSize(CELL);
+    std::vector<pcl::PointIndices> clusters;
+    extraction.extract(clusters);
+    benchmark::DoNotOptimize(clusters.data());
+  }
+}
+
+BENCHMARK(voxelGrid)->Unit(benchmark::kMillisecond);
+BENCHMARK(segmentLowPass)->Unit(benchmark::kMillisecond);
+BENCHMARK(euclideanClusters)->Unit(benchmark::kMillisecond);
+BENCHMARK(voxelClusters)->Unit(benchmark::kMillisecond);
+
+/// Prints as usual and keeps the median CPU time of each benchmark.
+class MedianReporter : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs)
+      if (run.aggregate_name.empty()) times_[run.run_name.function_name].push_back(run.GetAdjustedCPUTime());
+  }
+
+  void printRatio(const char* text, const std::string& numerator, const std::string& denominator) {
+    if (times_.count(numerator) == 0 || times_.count(denominator) == 0) return;
+    std::printf("%s: %.3f\n", text, median(numerator) / median(denominator));
+  }
+
+ private:
+  double median(const std::string& name) {
+    std::vector<double>& times = times_[name];
+    std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
+    return times[times.size() / 2];
+  }
+
+  std::map<std::string, std::vector<double>> times_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Interleaved repetitions: a machine that slows down meanwhile slows both sides of a ratio.
+  std::vector<char*> arguments(argv, argv + argc);
+  char repetitions[] = "--benchmark_repetitions=9",
+       interleaving[] = "--benchmark_enable_random_interleaving=true",
+       min_time[] = "--benchmark_min_time=0.05";
+  arguments.insert(arguments.begin() + 1, {repetitions, interleaving, min_time});
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  MedianReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  reporter.printRatio("segment (LOW_PASS) / pcl::VoxelGrid", "segmentLowPass", "voxelGrid");
+  reporter.printRatio("pcl::EuclideanClusterExtraction / VoxelClusterExtraction", "euclideanClusters",
+                      "voxelClusters");
+  return 0;
+}
