@@ -58,12 +58,11 @@ function(pcl_fft_ground_library name)
   set_property(GLOBAL APPEND PROPERTY PCL_FFT_GROUND_COMPONENTS ${name})
 endfunction()
 
-# pcl_fft_ground_program(<target>): a program that users run, in bin/ of the build tree and installed; it finds the
-# libraries beside it after the prefix has been moved, too.
+# pcl_fft_ground_program(<target>): a program that users run: in bin/ of the build tree; where it is installed it finds
+# the libraries beside it, after the prefix has been moved, too.
 function(pcl_fft_ground_program target)
   file(RELATIVE_PATH libraries_from_programs "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
   set_target_properties(${target} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin"
     INSTALL_RPATH "$ORIGIN/${libraries_from_programs}")
-  install(TARGETS ${target} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()

@@ -1,6 +1,7 @@
 #include "command_line.h"
 
 #include <cctype>
+#include <typeinfo>
 
 #include "errors.h"
 
@@ -18,6 +19,19 @@ bool isNegativeNumber(const std::string& word) {
   if (word.size() < 2 || word[0] != '-') return false;
   return std::isdigit(static_cast<unsigned char>(word[1])) != 0 || word[1] == '.' || word == "-inf" ||
          word == "-nan";
+}
+
+/// The error of a value that is no number, saying what is allowed.
+UsageError invalidValue(const std::string& command, const po::options_description& options,
+                        const po::validation_error& error) {
+  const std::string option = error.get_option_name();
+  const po::option_description* const description = options.find_nothrow(option.substr(2), false);
+  const auto* const value = description == nullptr
+                                ? nullptr
+                                : dynamic_cast<const po::typed_value_base*>(description->semantic().get());
+  const bool is_real = value != nullptr && value->value_type() == typeid(double);
+  return UsageError(command + ": " + error.what() + ": allowed is a " +
+                    (is_real ? "number" : "whole number"));
 }
 
 /// Ties negative numbers, and the three values of a direction, to the option before them.
@@ -55,6 +69,10 @@ po::variables_map parseArguments(const std::string& command, const std::vector<s
               values);
     po::notify(values);
     return values;
+  } catch (const po::invalid_option_value& error) {
+    throw invalidValue(command, options, error);
+  } catch (const po::too_many_positional_options_error&) {
+    throw UsageError(command + ": too many words without an option; a name with blanks needs quotes");
   } catch (const po::error& error) {
     throw UsageError(command + ": " + error.what());
   }

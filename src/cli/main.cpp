@@ -46,6 +46,7 @@ int run(const std::vector<std::string>& words) {
     throw UsageError((command.empty() ? "no command given" : "command '" + command + "'") +
                      std::string(": allowed is segment or simulate; see pcl_fft_ground --help"));
   }
+  if (!std::cout.flush()) throw WorkError("cannot write to the standard output");
   return 0;
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <iostream>
+#include <limits>
+#include <sstream>
 
 #include "command_line.h"
 #include "errors.h"
@@ -20,17 +22,19 @@ constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground segment CLOUD -o DI
 
 Splits a scan into ground and objects, and the objects into segments. CLOUD is a PCD or PLY file or text with
 x y z [label] in each line; coordinates are in metres, and the ground is what lies low. All that most scans
-need is the size of the largest object, --max-object-size, and a cell size of two or three times the spacing
-of the points.
-
+need is the size of the largest object, --max-object-size, and a --cell-size of two or three times the spacing
+of the points; the values in round brackets, which hold otherwise, suit a close scan of the sea floor.
 )";
 
 constexpr const char* HELP_AFTER = R"(
 DIR is made if need be and receives
-  labelled.pcd        all points with label (0 ground, 1 object, 2 neither) and segment (1.. by size, 0 none)
-  ground.pcd objects.pcd  the two apart          segments.csv  place, extent and height of each segment
-  ground_surface.pcd ground_surface.asc  the estimated ground       report.json  parameters, counts, scores
-  elevation.png ground.png spectrum.png labels.png segments.png    pictures
+  labelled.pcd                           all points, in order, with label (0 ground, 1 object, 2 neither) and
+                                         segment (1.. by falling size, 0 none)
+  ground.pcd objects.pcd                 the ground points and the object points
+  ground_surface.pcd ground_surface.asc  the estimated ground, as points and as an ESRI ASCII grid
+  segments.csv                           place, extent and height of each segment
+  report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores
+  elevation.png ground.png spectrum.png labels.png segments.png
 Where CLOUD has a label field, TPR, TNR and F1 of the objects are printed.
 
 Examples:
@@ -46,7 +50,8 @@ po::options_description commandOptions() {
   add("output,o", po::value<std::string>()->value_name("DIR"),
       "directory for the results; other files in it stay");
   add("leaf-size", po::value<double>()->value_name("M"),
-      "side of the voxels that cluster the objects [m], above 0 (the cell size)");
+      "side of the voxels that cluster the objects [m], above 0; no less than the spacing of the points (the "
+      "cell size)");
   add("min-cluster-size", po::value<long long>()->value_name("N"),
       "points of the smallest segment, at least 1 (10)");
   add("max-cluster-size", po::value<long long>()->value_name("N"),
@@ -59,21 +64,28 @@ po::options_description commandOptions() {
 
 std::size_t clusterSize(const po::variables_map& values, const std::string& option, std::size_t fallback) {
   if (values.count(option) == 0) return fallback;
+  constexpr long long MOST = std::numeric_limits<pcl::index_t>::max();
   const auto size = values[option].as<long long>();
-  if (size < 1)
-    throw UsageError("--" + option + " " + std::to_string(size) +
-                     ": allowed is a whole number of at least 1");
+  if (size < 1 || size > MOST)
+    throw UsageError("--" + option + " " + std::to_string(size) + ": allowed is a whole number from 1 to " +
+                     std::to_string(MOST));
   return static_cast<std::size_t>(size);
 }
 
 ClusterParameters clusterParameters(const po::variables_map& values, double cell_size) {
   ClusterParameters parameters;
   parameters.leaf_size = values.count("leaf-size") != 0 ? values["leaf-size"].as<double>() : cell_size;
-  if (!std::isfinite(parameters.leaf_size) || parameters.leaf_size <= 0)
-    throw UsageError("--leaf-size: leaf size is " + std::to_string(parameters.leaf_size) +
-                     ", must be a finite number of metres above 0");
+  if (!std::isfinite(parameters.leaf_size) || parameters.leaf_size <= 0) {
+    std::ostringstream message;
+    message << "--leaf-size " << parameters.leaf_size << ": allowed is a finite number of metres above 0";
+    throw UsageError(message.str());
+  }
   parameters.min_cluster_size = clusterSize(values, "min-cluster-size", parameters.min_cluster_size);
   parameters.max_cluster_size = clusterSize(values, "max-cluster-size", parameters.max_cluster_size);
+  if (parameters.max_cluster_size < parameters.min_cluster_size)
+    throw UsageError("--max-cluster-size " + std::to_string(parameters.max_cluster_size) +
+                     ": allowed is at least --min-cluster-size, " +
+                     std::to_string(parameters.min_cluster_size));
   return parameters;
 }
 
@@ -91,7 +103,8 @@ ordered_json describeClusterParameters(ordered_json parameters, const ClusterPar
 }
 
 std::string required(const po::variables_map& values, const std::string& option, const std::string& what) {
-  if (values.count(option) == 0) throw UsageError("segment: no " + what);
+  if (values.count(option) == 0 || values[option].as<std::string>().empty())
+    throw UsageError("segment: no " + what);
   return values[option].as<std::string>();
 }
 
@@ -121,11 +134,12 @@ void segment(const po::variables_map& values) {
   const ordered_json parameters =
       describeClusterParameters(describeParameters(segmenter, values), clusters, values);
   const ordered_json report = makeReport(input, cloud, segmenter, segmentation, parameters, progress);
-  writeText(directory + "/report.json", report.dump(2) + "\n");
+  const std::string text = asText(report);
+  writeText(directory + "/report.json", text);
   for (const std::string& warning : segmenter.filter->getWarnings())
     if (!quiet) std::cerr << "pcl_fft_ground: warning: " << input << ": " << warning << '\n';
   if (values["json"].as<bool>())
-    std::cout << report.dump(2) << '\n';
+    std::cout << text;
   else if (!quiet)
     printSummary(std::cout, report);
 }

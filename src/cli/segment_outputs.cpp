@@ -1,5 +1,6 @@
 #include "segment_outputs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -49,10 +50,24 @@ bool covers(const core::GridGeometry& cells, const Eigen::Vector3d& p) {
 double verticalHeight(const core::GroundSurface& surface, double x, double y) {
   const double upward = surface.frame_from_input.linear()(2, 2);
   if (std::abs(upward) < 0.1) return NO_DATA;  // the surface stands on end: a vertical does not meet it once
-  constexpr int STEPS = 20;
-  double z = 0;
-  for (int step = 0; step < STEPS; ++step) z -= surface.heightAbove({x, y, z}) / upward;
+  constexpr int MOST_STEPS = 20;
+  constexpr double CLOSE = 1e-6;  // [m], a hundredth of what the grid's four digits show
+  double z = 0, change = 1;
+  for (int step = 0; step < MOST_STEPS && std::abs(change) > CLOSE; ++step) {
+    change = surface.heightAbove({x, y, z}) / upward;
+    z -= change;
+  }
   return covers(surface.geometry, surface.frame_from_input * Eigen::Vector3d(x, y, z)) ? z : NO_DATA;
+}
+
+/// The surface's own cell size, or a larger one: a long scan that lies across the axes, in a grid along them,
+/// would need many times the cells that it has.
+double levelCellSize(const core::Bounds& bounds, const core::GridGeometry& cells) {
+  constexpr double MOST_CELLS_PER_CELL = 16;
+  const double most =
+      std::min(0.99 * core::MAX_CELLS, MOST_CELLS_PER_CELL * static_cast<double>(cells.rows * cells.cols));
+  const double needed = ((bounds.high - bounds.low).head<2>() / cells.cell_size + 1).prod();
+  return needed <= most ? cells.cell_size : cells.cell_size * std::sqrt(needed / most);
 }
 
 }  // namespace
@@ -81,7 +96,8 @@ void writeGroundSurface(const std::string& directory, const Cloud& cloud, const 
   core::Points corners(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t n = 0; n < points.size(); ++n)
     corners.col(static_cast<Eigen::Index>(n)) = points[n].getVector3fMap();
-  const core::GridGeometry level = core::gridAround(core::boundsOf(corners), surface.geometry.cell_size);
+  const core::Bounds bounds = core::boundsOf(corners);
+  const core::GridGeometry level = core::gridAround(bounds, levelCellSize(bounds, surface.geometry));
   // A cell is centred on the outermost points: they lie at cell centres of the surface.
   const Eigen::Vector2d lower_left = level.origin - Eigen::Vector2d::Constant(0.5 * level.cell_size);
   Eigen::ArrayXXd heights(level.rows, level.cols);

@@ -109,6 +109,10 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
           {"seconds", seconds}};
 }
 
+std::string asText(const ordered_json& report) {
+  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
 void printSummary(std::ostream& out, const ordered_json& report) {
   const ordered_json& counts = report["counts"];
   printShare(out, counts, "ground");

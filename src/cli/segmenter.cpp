@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "command_line.h"
 #include "errors.h"
+#include "scanner.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -49,21 +51,19 @@ void apply(const po::variables_map& values, const std::string& option, const Set
   try {
     set(values[option].as<Value>());
   } catch (const pcl::PCLException& problem) {
-    const std::string message = problem.what();
-    throw UsageError("--" + option + message.substr(message.find(": ")));
+    const std::string message = problem.what();  // "Class: parameter is value, must be range"
+    throw UsageError("--" + option + message.substr(message.rfind(": ")));
   }
 }
 
 Eigen::Vector3d toDirection(const std::string& text) {
-  std::istringstream words(text);
-  std::string x, y, z, more;
-  words >> x >> y >> z;
-  try {
-    if (z.empty() || words >> more) throw std::invalid_argument("not three numbers");
-    return {std::stod(x), std::stod(y), std::stod(z)};
-  } catch (const std::exception&) {
+  std::string_view rest = text;
+  const std::optional<double> x = parseNumber<double>(takeWord(rest)),
+                              y = parseNumber<double>(takeWord(rest)),
+                              z = parseNumber<double>(takeWord(rest));
+  if (!x || !y || !z || !takeWord(rest).empty())
     throw UsageError("--up-direction " + text + ": allowed are three numbers, X Y Z");
-  }
+  return {*x, *y, *z};
 }
 
 void setUpFrame(GroundSegmentation<Point>& filter, const po::variables_map& values) {
@@ -115,17 +115,16 @@ po::options_description segmenterOptions() {
       "how ground is told from objects: fft or fft-lowpass, at present both the published low-pass");
   add("cell-size", number()->value_name("M"), "side of an elevation cell [m], above 0 (0.02)");
   add("max-object-size", number()->value_name("M"),
-      "size of the largest object [m], above 0: anything larger is ground. The one parameter to set");
+      "size of the largest object [m], above 0: anything larger is ground");
   add("relative-max-object-size", number()->value_name("SHARE"),
-      "the same as a share of the scan's smaller extent, in (0, 1] (0.5)");
+      "the same as a share of the scan's smaller horizontal extent, in (0, 1] (0.5)");
   add("height-tolerance", number()->value_name("M"),
       "height above the ground up to which a point is ground [m] (0)");
   add("up-direction", po::value<std::string>()->value_name("X Y Z"),
       "direction of positive elevation (0 0 1)");
   add("up-estimation", po::value<std::string>()->value_name("NAME"),
-      "principal-axis: the direction in which the points vary least, turned towards --up-direction; given: "
-      "that "
-      "direction; auto: the principal axis where it can be trusted (principal-axis)");
+      "principal-axis: the direction in which the points vary least, turned towards --up-direction; "
+      "given: --up-direction itself; auto: the principal axis where it can be trusted (principal-axis)");
   add("yaw", po::value<std::string>()->value_name("NAME"),
       "how the grid is turned about up: min-area-rectangle, principal-axes or none (min-area-rectangle)");
   add("cutoff-frequency", number()->value_name("RATIO"),

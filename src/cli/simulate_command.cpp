@@ -16,6 +16,7 @@
 #include "errors.h"
 #include "pcd_cloud.h"
 #include "pcl_fft_ground/core/simulation.h"
+#include "segment_report.h"
 
 namespace pcl_fft_ground::cli {
 
@@ -167,7 +168,7 @@ void printJson(const Request& request, const Summary& summary) {
                                          {"points", summary.points},
                                          {"object_share", summary.object_share},
                                          {"objects", summary.objects}};
-  std::cout << report.dump(2) << "\n";
+  std::cout << asText(report);
 }
 
 void printLine(const Request& request, const Summary& summary) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "pcl_fft_ground/core/spectrum.h"
 
@@ -31,8 +32,7 @@ Eigen::Index wrapped(Eigen::Index bin, Eigen::Index length) {
 }
 
 /// The magnitudes that eq. (3) compares: rounding errors are zero, DC is below everything.
-Eigen::ArrayXXd comparable(const Eigen::ArrayXXd& magnitude) {
-  Eigen::ArrayXXd m = magnitude;
+Eigen::ArrayXXd comparable(Eigen::ArrayXXd m) {
   m(0, 0) = -1;
   const double smallest = ROUNDING * m.maxCoeff();
   m = (m < smallest).select(0.0, m);
@@ -55,11 +55,10 @@ bool isPeak(const Eigen::ArrayXXd& m, Eigen::Index k, Eigen::Index l,
 
 }  // namespace
 
-std::vector<SpectrumPeak> findSpectrumPeaks(const Eigen::ArrayXXd& magnitude,
-                                            const PeakParameters& parameters) {
+std::vector<SpectrumPeak> findSpectrumPeaks(Eigen::ArrayXXd magnitude, const PeakParameters& parameters) {
   if (magnitude.size() == 0) return {};
   const Eigen::Index rows = magnitude.rows(), cols = magnitude.cols();
-  const Eigen::ArrayXXd m = comparable(magnitude);
+  const Eigen::ArrayXXd m = comparable(std::move(magnitude));
   const int half_window = static_cast<int>(std::min<unsigned>(parameters.half_window, 1U << 20));
   const std::vector<Eigen::Array2i> window = windowOffsets(half_window, rows, cols);
 

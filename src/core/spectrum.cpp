@@ -88,13 +88,12 @@ Spectrum forwardTransform(const Eigen::ArrayXXd& grid) {
   return spectrum;
 }
 
-Eigen::ArrayXXd inverseTransform(const Spectrum& spectrum) {
-  Eigen::ArrayXXd grid(spectrum.rows, spectrum.cols());
-  if (grid.size() == 0) return grid;
-  Eigen::ArrayXXcd half = spectrum.half;
+Eigen::ArrayXXd inverseTransform(Spectrum spectrum) {
+  if (spectrum.half.size() == 0) return Eigen::ArrayXXd(spectrum.rows, spectrum.cols());
   Fft fft(static_cast<int>(spectrum.cols()));
-  transformRows(half, [&](const Complex* in, Complex* out) { fft.inverse(in, out); });
-  inverseTransformColumns(half, grid);
+  transformRows(spectrum.half, [&](const Complex* in, Complex* out) { fft.inverse(in, out); });
+  Eigen::ArrayXXd grid(spectrum.rows, spectrum.cols());
+  inverseTransformColumns(spectrum.half, grid);
   return grid;
 }
 

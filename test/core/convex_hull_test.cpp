@@ -29,7 +29,8 @@ Polygon turned(const Polygon& polygon, double angle) {
 
 Polygon regularPolygon(int corners) {
   Polygon polygon;
-  for (int n = 0; n < corners; ++n) polygon.push_back(Eigen::Rotation2Dd(2 * M_PI * n / corners) * Eigen::Vector2d(1, 0));
+  for (int n = 0; n < corners; ++n)
+    polygon.push_back(Eigen::Rotation2Dd(2 * M_PI * n / corners) * Eigen::Vector2d(1, 0));
   return polygon;
 }
 
@@ -71,8 +72,8 @@ TEST(ConvexHull, OfDegenerateSets) {
 class ConvexHullOfSeed : public testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, ConvexHullOfSeed, testing::Range(1U, 9U));
 
-// A point is a corner exactly if some line through it has all other points strictly on one side: an edge i -> j
-// of the hull is a pair with all others on its left.
+// A point is a corner exactly if some line through it has all other points strictly on one side: an edge i ->
+// j of the hull is a pair with all others on its left.
 TEST_P(ConvexHullOfSeed, HasTheEdgesThatLeaveAllPointsOnTheLeft) {
   std::mt19937 random(GetParam());
   for (const int count : {3, 4, 7, 30, 80}) {
@@ -83,8 +84,8 @@ TEST_P(ConvexHullOfSeed, HasTheEdgesThatLeaveAllPointsOnTheLeft) {
     for (const Eigen::Vector2d& a : points)
       for (const Eigen::Vector2d& b : points) {
         const bool is_edge = a != b && std::all_of(points.begin(), points.end(), [&](const auto& p) {
-          return p == a || p == b || turn(a, b, p) > 0;
-        });
+                               return p == a || p == b || turn(a, b, p) > 0;
+                             });
         if (!is_edge) continue;
         ++edges;
         const auto corner = std::find(hull.begin(), hull.end(), a);
@@ -124,9 +125,12 @@ TEST(MinimumAreaRectangle, OfEqualOnesTheLeastTurnedIsTaken) {
   constexpr double DEGREE = M_PI / 180;
   // An octagon has two directions, 45 degrees apart; a dodecagon three, 30 degrees apart.
   EXPECT_NEAR(minimumAreaRectangleAngle(convexHull(turned(regularPolygon(8), 22.5 * DEGREE))), 0, 1e-12);
-  EXPECT_NEAR(minimumAreaRectangleAngle(convexHull(turned(regularPolygon(8), 32.5 * DEGREE))), 10 * DEGREE, 1e-12);
-  EXPECT_NEAR(minimumAreaRectangleAngle(convexHull(turned(regularPolygon(8), 12.5 * DEGREE))), -10 * DEGREE, 1e-12);
-  EXPECT_NEAR(minimumAreaRectangleAngle(convexHull(turned(regularPolygon(12), 35 * DEGREE))), -10 * DEGREE, 1e-12);
+  EXPECT_NEAR(minimumAreaRectangleAngle(convexHull(turned(regularPolygon(8), 32.5 * DEGREE))), 10 * DEGREE,
+              1e-12);
+  EXPECT_NEAR(minimumAreaRectangleAngle(convexHull(turned(regularPolygon(8), 12.5 * DEGREE))), -10 * DEGREE,
+              1e-12);
+  EXPECT_NEAR(minimumAreaRectangleAngle(convexHull(turned(regularPolygon(12), 35 * DEGREE))), -10 * DEGREE,
+              1e-12);
 }
 
 TEST(MinimumAreaRectangle, AnEighthOfATurnIsPositive) {

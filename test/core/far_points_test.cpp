@@ -44,7 +44,8 @@ FarPoints slowFarPoints(const Points& points) {
   return far;
 }
 
-/// Points at 0, 1 .. 9 on one axis and one at `stray`: the trimmed box is [1, 9], so 33 is the last near place.
+/// Points at 0, 1 .. 9 on one axis and one at `stray`: the trimmed box is [1, 9], so 33 is the last near
+/// place.
 Points lineWithStray(Eigen::Index axis, float stray) {
   Points points = Points::Zero(3, 11);
   for (Eigen::Index n = 0; n < 10; ++n) points(axis, n) = static_cast<float>(n);
@@ -132,8 +133,8 @@ TEST_P(FarPointsOfSeed, AgreeWithSortedAxes) {
   std::mt19937 random(GetParam());
   for (const Eigen::Index count : {8, 9, 20, 150, 999, 1000, 1001, 1999, 2000, 4001})
     for (Eigen::Index strays = 0; strays <= 5; ++strays) {
-      SCOPED_TRACE(testing::Message() << "seed " << GetParam() << ", " << count << " points, " << strays
-                                      << " strays");
+      SCOPED_TRACE(testing::Message()
+                   << "seed " << GetParam() << ", " << count << " points, " << strays << " strays");
       Points points = randomBox(count, {-1, 0, 5}, {1, 3, 5.1}, random);
       for (Eigen::Index n = 0; n < strays; ++n)
         points(static_cast<Eigen::Index>(random() % 3), static_cast<Eigen::Index>(random()) % count) =
@@ -148,7 +149,8 @@ TEST_P(FarPointsOfSeed, AreFoundBesideTheWidestSpread) {
   std::mt19937 random(GetParam());
   for (const Eigen::Index count : {1000, 1500, 1999, 2000, 3999, 10000})
     for (const float stray : {3.9F, 4.001F, 4.2F, 5.0F, 7.0F, -2.9F, -3.001F, -3.2F}) {
-      SCOPED_TRACE(testing::Message() << "seed " << GetParam() << ", " << count << " points, one at " << stray);
+      SCOPED_TRACE(testing::Message()
+                   << "seed " << GetParam() << ", " << count << " points, one at " << stray);
       Points points = Points::Zero(3, count);
       const double share = uniform(random, 0.3, 0.7);
       for (Eigen::Index n = 0; n < count; ++n)

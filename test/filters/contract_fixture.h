@@ -50,8 +50,8 @@ struct Subject {
 /// Gives a test access to what a filter keeps to itself, and its class name.
 template <typename SegmenterT>
 struct Opened : SegmenterT {
-  using SegmenterT::SegmenterT;
   using SegmenterT::getClassName;
+  using SegmenterT::SegmenterT;
 };
 
 inline pcl::Indices sorted(pcl::Indices indices) {
@@ -148,7 +148,7 @@ class FilterContract : public testing::Test {
 
   const Scene scene_ = boxScene();
   const typename CloudT::Ptr scan_ = cloudOf<PointT>(scene_);  ///< organised and dense
-  const typename CloudT::Ptr spoilt_ = [this] {               ///< the same with points that are not finite
+  const typename CloudT::Ptr spoilt_ = [this] {                ///< the same with points that are not finite
     const auto cloud = cloudOf<PointT>(scene_);
     spoilPoints(*cloud);
     return cloud;

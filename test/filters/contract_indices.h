@@ -26,8 +26,8 @@ TYPED_TEST_P(FilterContract, Line08OldContentIsDiscardedOrderAndMultiplicityKept
 
 TYPED_TEST_P(FilterContract, Line09ResultAndRemovedTogetherAreTheInputIndices) {
   auto segmenter = this->recording(this->spoilt_);
-  for (const pcl::IndicesPtr& indices :
-       {pcl::IndicesPtr(), shuffledIndices(this->spoilt_->size()), pcl::IndicesPtr(new pcl::Indices{5, 9, 9})}) {
+  for (const pcl::IndicesPtr& indices : {pcl::IndicesPtr(), shuffledIndices(this->spoilt_->size()),
+                                         pcl::IndicesPtr(new pcl::Indices{5, 9, 9})}) {
     segmenter.setIndices(indices);
     const pcl::Indices expected = indices ? sorted(*indices) : allIndices(this->spoilt_->size());
     for (const bool negative : {false, true}) {

@@ -48,7 +48,8 @@ TYPED_TEST_P(FilterContract, Line26SettersReadBackAndRejectInvalidValues) {
   auto& segmenter = this->segmenter_;
   segmenter.setUpDirection(Eigen::Vector3d(0, 3, 4));
   EXPECT_TRUE(segmenter.getUpDirection().isApprox(Eigen::Vector3d(0, 0.6, 0.8)));
-  for (const UpEstimation estimation : {UpEstimation::AUTO, UpEstimation::PRINCIPAL_AXIS, UpEstimation::GIVEN}) {
+  for (const UpEstimation estimation :
+       {UpEstimation::AUTO, UpEstimation::PRINCIPAL_AXIS, UpEstimation::GIVEN}) {
     segmenter.setUpEstimation(estimation);
     EXPECT_EQ(segmenter.getUpEstimation(), estimation);
   }
@@ -58,8 +59,8 @@ TYPED_TEST_P(FilterContract, Line26SettersReadBackAndRejectInvalidValues) {
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& invalid : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, nan, 1),
-                                         Eigen::Vector3d(infinity, 0, 0)}) {
+  for (const Eigen::Vector3d& invalid :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, nan, 1), Eigen::Vector3d(infinity, 0, 0)}) {
     try {
       segmenter.setUpDirection(invalid);
       ADD_FAILURE() << "accepted " << invalid.transpose();
@@ -73,7 +74,8 @@ TYPED_TEST_P(FilterContract, Line26SettersReadBackAndRejectInvalidValues) {
 
 TYPED_TEST_P(FilterContract, Line27IndicesHavePclsType) {
   using Segmenter = typename TypeParam::Segmenter;
-  static_assert(std::is_same_v<std::decay_t<decltype(std::declval<Segmenter>().getFarPoints())>, pcl::Indices>);
+  static_assert(
+      std::is_same_v<std::decay_t<decltype(std::declval<Segmenter>().getFarPoints())>, pcl::Indices>);
   pcl::PointIndices ground, objects;
   this->segmenter_.setInputCloud(this->scan_);
   this->segmenter_.segment(ground, objects);
@@ -176,7 +178,6 @@ TYPED_TEST_P(FilterContract, Line29NothingOnStandardOutputErrorsOnStandardError)
 }
 
 TYPED_TEST_P(FilterContract, Line31ResultCanBeClusteredByPcl) {
-  // The boxes alone, so that what PCL finds is known: one cluster for each.
   auto segmenter = this->recording(this->spoilt_);
   for (const bool negative : {false, true}) {
     segmenter.setNegative(negative);

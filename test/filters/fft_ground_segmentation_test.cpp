@@ -133,7 +133,8 @@ TEST(FFTGroundSegmentation, InvalidValuesAreNamedWithTheirRange) {
                    {"relative maximum object size", text, "(0, 1]"});
     expectRejected([&] { s.setPassbandRipple(v); }, {"passband ripple", text, "(0, 100]"});
   }
-  expectRejected([&] { s.setRelativeMaximumObjectSize(1.25); }, {"relative maximum object size", "1.25", "(0, 1]"});
+  expectRejected([&] { s.setRelativeMaximumObjectSize(1.25); },
+                 {"relative maximum object size", "1.25", "(0, 1]"});
   expectRejected([&] { s.setHeightTolerance(nan); }, {"height tolerance", "nan", "finite"});
   expectRejected([&] { s.setHeightTolerance(infinity); }, {"height tolerance", "inf", "finite"});
   expectRejected([&] { s.setCutoffFrequency(-0.1); }, {"cut-off frequency", "-0.1", "(0, 1.41421]"});
@@ -163,14 +164,17 @@ TEST(FFTGroundSegmentation, ElevationGridHoldsTheHighestPointOfEachCell) {
   for (Eigen::Index n = 0; n < scene.points.cols(); ++n) {
     const Eigen::Vector3d p = segmenter.getFrame() * scene.points.col(n).cast<double>();
     const Eigen::Vector2d cell = (p.head<2>() - cells.origin) / CELL;
-    const auto i = std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::floor(cell.x())), 0, cells.rows - 1);
-    const auto j = std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::floor(cell.y())), 0, cells.cols - 1);
+    const auto i =
+        std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::floor(cell.x())), 0, cells.rows - 1);
+    const auto j =
+        std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::floor(cell.y())), 0, cells.cols - 1);
     highest(i, j) = std::max(highest(i, j), p.z());
   }
   const core::Mask expected_observed = highest > -1e8;
   EXPECT_TRUE((grid.observed == expected_observed).all());
   EXPECT_LT((grid.observed.select(grid.elevation - highest, 0.0)).abs().maxCoeff(), 1e-6);
-  const double empty = static_cast<double>((!expected_observed).count()) / static_cast<double>(highest.size());
+  const double empty =
+      static_cast<double>((!expected_observed).count()) / static_cast<double>(highest.size());
   EXPECT_NEAR(segmenter.getEmptyCellShare(), empty, 1e-12);
 }
 
@@ -424,8 +428,8 @@ TEST(FFTGroundSegmentation, LabelsDoNotDependOnAQuarterTurnAboutUp) {
   Eigen::Matrix3Xf quarter = points;
   quarter.row(0) = -points.row(1);
   quarter.row(1) = points.row(0);
-  // The grid starts at another corner after the turn. It is the same grid, to 0.7 micrometres, if the cells fill
-  // the rectangle of 4 m x 2.5 m.
+  // The grid starts at another corner after the turn. It is the same grid, to 0.7 micrometres, if the cells
+  // fill the rectangle of 4 m x 2.5 m.
   Segmenter straight = segmenterOn(points), turned_scene = segmenterOn(quarter);
   for (Segmenter* segmenter : {&straight, &turned_scene}) {
     segmenter->setCellSize(CELL * (1 + 1.8e-7));

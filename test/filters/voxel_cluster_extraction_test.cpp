@@ -49,7 +49,8 @@ bool inContact(const pcl::PointXYZ& a, const pcl::PointXYZ& b, double leaf_size)
 }
 
 /// The same clusters by comparing all pairs: grows each from its first point.
-std::vector<pcl::Indices> bruteForceClusters(const Cloud& cloud, const pcl::Indices& indices, double leaf_size) {
+std::vector<pcl::Indices> bruteForceClusters(const Cloud& cloud, const pcl::Indices& indices,
+                                             double leaf_size) {
   std::vector<pcl::Indices> clusters;
   std::vector<bool> taken(indices.size(), false);
   for (std::size_t seed = 0; seed < indices.size(); ++seed) {
@@ -124,7 +125,8 @@ TEST(VoxelClusterExtraction, VoxelsDoNotDoubleUpAtTheOrigin) {
 }
 
 TEST(VoxelClusterExtraction, ClustersFallInSizeEqualOnesStandByTheirFirstPoint) {
-  const Cloud::Ptr cloud = cloudOfPoints({{9, 0, 0}, {0, 0, 0}, {5, 0, 0}, {5, 0, 0}, {0, 0, 0}, {5, 0, 0}, {-9, 0, 0}});
+  const Cloud::Ptr cloud =
+      cloudOfPoints({{9, 0, 0}, {0, 0, 0}, {5, 0, 0}, {5, 0, 0}, {0, 0, 0}, {5, 0, 0}, {-9, 0, 0}});
   const std::vector<pcl::Indices> expected = {{2, 3, 5}, {1, 4}, {0}, {6}};
   EXPECT_EQ(indicesOf(extract(cloud, 0.1)), expected);
 }

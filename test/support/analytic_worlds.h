@@ -31,8 +31,8 @@ core::Points scatteredOn(Eigen::Index count, double width, double depth, const H
                          std::mt19937& random) {
   core::Points points = randomBox(count, {0, 0, 0}, {width, depth, 1}, random);
   for (Eigen::Index n = 0; n < count; ++n)
-    points(2, n) = static_cast<float>(
-        height(static_cast<double>(points(0, n)), static_cast<double>(points(1, n))));
+    points(2, n) =
+        static_cast<float>(height(static_cast<double>(points(0, n)), static_cast<double>(points(1, n))));
   return points;
 }
 

@@ -25,18 +25,18 @@ inline double boxSceneGround(double x, double y) {
 /// True under one of the boxes.
 inline bool isUnderBox(double x, double y) {
   constexpr double HALF_SIDE = 0.2;
-  constexpr std::array<std::array<double, 2>, 4> CENTRES = {
-      {{0.7, 0.6}, {1.9, 1.7}, {3.1, 0.9}, {3.3, 2.0}}};
+  constexpr std::array<std::array<double, 2>, 4> CENTRES = {{{0.7, 0.6}, {1.9, 1.7}, {3.1, 0.9}, {3.3, 2.0}}};
   for (const auto& centre : CENTRES)
     if (std::abs(x - centre[0]) < HALF_SIDE && std::abs(y - centre[1]) < HALF_SIDE) return true;
   return false;
 }
 
-/** Boxes 0.4 m wide and 0.3 m high on a gently swelling ground, seen from above: 100 x 62 points, 0.04 m apart.
+/** Boxes 0.4 m wide and 0.3 m high on a gently swelling ground, seen from above: 100 x 62 points, 0.04 m
+ * apart.
  *
  * The places are scattered a little. Coordinates are odd multiples of 2^-13 m, so that translations by whole
- * metres and quarter turns are exact in float, and no point lies on the edge of a cell of 0.05 m. The points at
- * the corners span the rectangle [0, 4] x [0, 2.5] exactly.
+ * metres and quarter turns are exact in float, and no point lies on the edge of a cell of 0.05 m. The points
+ * at the corners span the rectangle [0, 4] x [0, 2.5] exactly.
  */
 inline Scene boxScene() {
   constexpr double BOX_HEIGHT = 0.3, STEP = 1.0 / 4096;

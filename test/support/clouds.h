@@ -50,7 +50,8 @@ bool sameClouds(const pcl::PointCloud<PointT>& a, const pcl::PointCloud<PointT>&
          a.header.frame_id == b.header.frame_id && a.header.stamp == b.header.stamp &&
          a.header.seq == b.header.seq && a.sensor_origin_ == b.sensor_origin_ &&
          a.sensor_orientation_.coeffs() == b.sensor_orientation_.coeffs() &&
-         std::equal(a.begin(), a.end(), b.begin(), [](const PointT& p, const PointT& q) { return sameFields(p, q); });
+         std::equal(a.begin(), a.end(), b.begin(),
+                    [](const PointT& p, const PointT& q) { return sameFields(p, q); });
 }
 
 template <typename PointT>

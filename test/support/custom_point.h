@@ -22,5 +22,6 @@ struct EIGEN_ALIGN16 SonarPoint {
 }  // namespace pcl_fft_ground::test
 
 POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_fft_ground::test::SonarPoint,
-                                  (double, time, time)(std::uint16_t, beam, beam)(float, intensity, intensity)(
-                                      float, x, x)(float, y, y)(float, z, z)(std::uint8_t, quality, quality))
+                                  (double, time, time)(std::uint16_t, beam, beam)(float, intensity,
+                                                                                  intensity)(float, x, x)(
+                                      float, y, y)(float, z, z)(std::uint8_t, quality, quality))

@@ -31,7 +31,7 @@ struct PeakParameters {
  * \param magnitude magnitudes of all bins, DC at (0, 0)
  * \return the peaks, both of each conjugate pair, by falling wavelength: sorted by radius, then l, then k
  */
-PCL_FFT_GROUND_CORE_EXPORT std::vector<SpectrumPeak> findSpectrumPeaks(const Eigen::ArrayXXd& magnitude,
+PCL_FFT_GROUND_CORE_EXPORT std::vector<SpectrumPeak> findSpectrumPeaks(Eigen::ArrayXXd magnitude,
                                                                        const PeakParameters& parameters);
 
 /// Where a cut-off frequency comes from.

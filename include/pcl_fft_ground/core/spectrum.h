@@ -27,8 +27,8 @@ PCL_FFT_GROUND_CORE_EXPORT double binRadius(Eigen::Index k, Eigen::Index l, Eige
 /// Discrete Fourier transform of a grid. O(cells log(cells)) for every size, primes included.
 PCL_FFT_GROUND_CORE_EXPORT Spectrum forwardTransform(const Eigen::ArrayXXd& grid);
 
-/// The grid that has this spectrum.
-PCL_FFT_GROUND_CORE_EXPORT Eigen::ArrayXXd inverseTransform(const Spectrum& spectrum);
+/// The grid that has this spectrum. A spectrum that is moved in serves as work space.
+PCL_FFT_GROUND_CORE_EXPORT Eigen::ArrayXXd inverseTransform(Spectrum spectrum);
 
 /// Magnitudes of all bins, the conjugate half included: rows x cols, DC at (0, 0).
 PCL_FFT_GROUND_CORE_EXPORT Eigen::ArrayXXd magnitude(const Spectrum& spectrum);
