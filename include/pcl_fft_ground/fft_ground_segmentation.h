@@ -43,11 +43,6 @@ class FFTGroundSegmentation : public GroundSegmentation<PointT> {
   /// The share set; NaN where a size in metres is in force.
   double getRelativeMaximumObjectSize() const;
 
-  /// Height above the ground surface [m], finite, up to which a point still is ground. Default 0, as
-  /// published.
-  void setHeightTolerance(double tolerance);
-  double getHeightTolerance() const { return height_tolerance_; }
-
   /// f_c as a ratio of the Nyquist range, in (0, sqrt 2], or 0 to find it automatically (the default).
   void setCutoffFrequency(double cutoff);
   /// f_c of the last run; before that the value set, 0 for automatic.
@@ -87,7 +82,7 @@ class FFTGroundSegmentation : public GroundSegmentation<PointT> {
   /// The cut-off of the last run: f_c, m_c and the peak that gave it.
   const core::Cutoff& getCutoff() const { return ground_.cutoff; }
   /// Height of the ground over the elevation cells.
-  const core::GroundSurface& getGroundSurface() const { return ground_.surface; }
+  const core::GroundSurface& getGroundSurface() const override { return ground_.surface; }
 
  protected:
   core::Labels labelPoints(const core::Points& points, const Eigen::Isometry3d& frame_from_input) override;
@@ -96,7 +91,6 @@ class FFTGroundSegmentation : public GroundSegmentation<PointT> {
   void warnOfDoubts();
 
   core::LowPassParameters parameters_;
-  double height_tolerance_ = 0.0;
   core::LowPassGround ground_;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pcl_fft_ground/core/frame.h"
+#include "pcl_fft_ground/core/ground_surface.h"
 #include "pcl_fft_ground/core/labels.h"
 #include "pcl_fft_ground/core/point_statistics.h"
 #include "pcl_fft_ground/core/points.h"
@@ -59,6 +60,15 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   void setYaw(Yaw yaw) { frame_parameters_.yaw = yaw; }
   Yaw getYaw() const { return frame_parameters_.yaw; }
 
+  /// Height above the ground surface [m], finite, up to which a point still is ground. Default 0, as
+  /// published.
+  void setHeightTolerance(double tolerance);
+  double getHeightTolerance() const { return height_tolerance_; }
+
+  /// Height of the ground, as the method sees it, in the level frame of the last run; without cells before
+  /// the first.
+  virtual const core::GroundSurface& getGroundSurface() const = 0;
+
   /// Frame of the last run: brings input points into the level frame whose +z is up. Identity before the
   /// first run.
   const Eigen::Isometry3d& getFrame() const { return frame_from_input_; }
@@ -91,6 +101,9 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   void requireParameter(bool valid, const std::string& parameter, double value,
                         const std::string& range) const;
 
+  /// Throws as above unless the value is a finite number of metres above 0.
+  void requireLength(const std::string& parameter, double value) const;
+
   void applyFilter(pcl::Indices& indices) override;
   void applyFilter(PointCloud& output) override;
 
@@ -116,6 +129,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   void copyOrganized(const core::Labels& labels, PointCloud& output) const;
 
   core::FrameParameters frame_parameters_;
+  double height_tolerance_ = 0.0;
   Eigen::Isometry3d frame_from_input_ = Eigen::Isometry3d::Identity();
   pcl::Indices far_points_;
   std::string error_;

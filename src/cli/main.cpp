@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "errors.h"
+#include "evaluate_command.h"
 #include "pcl_fft_ground/version.h"
 #include "segment_command.h"
 #include "simulate_command.h"
@@ -20,6 +21,7 @@ Takes the ground out of 3D scans in the frequency domain.
 
 Commands:
   segment  CLOUD -o DIR              split a scan into ground, objects and segments
+  evaluate CLOUD...                  compare methods on labelled scans
   simulate wreck|pipes|reef -o FILE  make a labelled scan of the sea floor
 
 `pcl_fft_ground COMMAND --help` explains a command. Also: --help, --version.
@@ -36,6 +38,8 @@ int run(const std::vector<std::string>& words) {
                                            words.end());
   if (command == "segment") {
     runSegment(arguments);
+  } else if (command == "evaluate") {
+    runEvaluate(arguments);
   } else if (command == "simulate") {
     runSimulate(arguments);
   } else if (command == "--help" || command == "-h" || command == "help") {
@@ -44,7 +48,7 @@ int run(const std::vector<std::string>& words) {
     std::cout << "pcl_fft_ground " << PCL_FFT_GROUND_VERSION << '\n';
   } else {
     throw UsageError((command.empty() ? "no command given" : "command '" + command + "'") +
-                     std::string(": allowed is segment or simulate; see pcl_fft_ground --help"));
+                     std::string(": allowed is segment, evaluate or simulate; see pcl_fft_ground --help"));
   }
   if (!std::cout.flush()) throw WorkError("cannot write to the standard output");
   return 0;

@@ -49,6 +49,10 @@ po::options_description commandOptions() {
   auto add = options.add_options();
   add("output,o", po::value<std::string>()->value_name("DIR"),
       "directory for the results; other files in it stay");
+  add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
+      "how ground is told from objects: naive, planar, grid, graph-cut, fft-lowpass (the published method) "
+      "or fft (at "
+      "present the same)");
   add("leaf-size", po::value<double>()->value_name("M"),
       "side of the voxels that cluster the objects [m], above 0; no less than the spacing of the points (the "
       "cell size)");
@@ -111,7 +115,7 @@ std::string required(const po::variables_map& values, const std::string& option,
 void segment(const po::variables_map& values) {
   const std::string input = required(values, "cloud", "cloud given: name a PCD, PLY or text file");
   const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
-  Segmenter segmenter = makeSegmenter(values);
+  Segmenter segmenter = makeSegmenter(values["method"].as<std::string>(), values);
   const ClusterParameters clusters = clusterParameters(values, segmenter.cell_size);
   const bool quiet = values["quiet"].as<bool>();
 
@@ -131,8 +135,7 @@ void segment(const po::variables_map& values) {
   writePictures(directory, segmenter, segmentation, cloud);
   progress.end();
 
-  const ordered_json parameters =
-      describeClusterParameters(describeParameters(segmenter, values), clusters, values);
+  const ordered_json parameters = describeClusterParameters(segmenter.parameters, clusters, values);
   const ordered_json report = makeReport(input, cloud, segmenter, segmentation, parameters, progress);
   const std::string text = asText(report);
   writeText(directory + "/report.json", text);

@@ -59,7 +59,8 @@ void writePictures(const std::string& directory, const Segmenter& segmenter, con
   });
   draw("ground.png",
        [&](const auto& path) { drawHeights(path, "Ground surface", ground, "height [m]", range); });
-  draw("spectrum.png", [&](const auto& path) { drawSpectrum(path, spectrumImage(*segmenter.fft)); });
+  if (segmenter.fft != nullptr)
+    draw("spectrum.png", [&](const auto& path) { drawSpectrum(path, spectrumImage(*segmenter.fft)); });
 
   const auto count = [&](const pcl::PointIndices& indices) {
     return static_cast<long long>(indices.indices.size());

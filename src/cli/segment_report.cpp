@@ -50,7 +50,9 @@ const char* nameOf(core::CutoffSource source) {
   return "option";
 }
 
-ordered_json describeSpectrum(const FFTGroundSegmentation<Point>& fft) {
+ordered_json describeSpectrum(const FFTGroundSegmentation<Point>* filter) {
+  if (filter == nullptr) return nullptr;
+  const FFTGroundSegmentation<Point>& fft = *filter;
   const core::Cutoff& cutoff = fft.getCutoff();
   const std::vector<core::SpectrumPeak>& peaks = fft.getSpectrumPeaks();
   ordered_json nearest = ordered_json::array();
@@ -98,12 +100,13 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
   ordered_json seconds;
   for (const auto& [stage, time] : progress.seconds()) seconds[stage] = time;
   return {{"input", input},
+          {"method", segmenter.method},
           {"parameters", std::move(parameters)},
           {"frame_from_input", asRows(segmenter.filter->getFrame().matrix())},
           {"origin", {cloud.origin.x(), cloud.origin.y(), cloud.origin.z()}},
           {"counts", describeCounts(cloud, segmenter, segmentation)},
           {"elevation", describeElevation(segmentation.elevation)},
-          {"spectrum", describeSpectrum(*segmenter.fft)},
+          {"spectrum", describeSpectrum(segmenter.fft)},
           {"scores", describeScores(segmentation.confusion)},
           {"warnings", segmenter.filter->getWarnings()},
           {"seconds", seconds}};
@@ -127,9 +130,11 @@ void printSummary(std::ostream& out, const ordered_json& report) {
   out << "grid        " << elevation["rows"] << " x " << elevation["cols"] << " cells of "
       << elevation["cell_size"] << " m, " << 100 * elevation["empty_cell_share"].get<double>()
       << " % of them empty\n"
-      << std::setprecision(4) << "cut-off     f_c = " << spectrum["cutoff_frequency"].get<double>()
-      << ", m_c = " << spectrum["object_size"].get<double>() << " m, from "
-      << spectrum["cutoff_from"].get<std::string>() << '\n';
+      << std::setprecision(4);
+  if (!spectrum.is_null())
+    out << "cut-off     f_c = " << spectrum["cutoff_frequency"].get<double>()
+        << ", m_c = " << spectrum["object_size"].get<double>() << " m, from "
+        << spectrum["cutoff_from"].get<std::string>() << '\n';
   if (report["scores"].is_null()) return;
   out << "scores    ";
   for (const char* name : {"tpr", "tnr", "f1"}) {

@@ -4,17 +4,12 @@
 #include <cmath>
 
 #include "errors.h"
+#include "pcl_fft_ground/core/far_points.h"
+#include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
-
-core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects) {
-  core::Labels labels(count, core::Label::NEITHER);
-  for (const pcl::index_t n : ground.indices) labels[static_cast<std::size_t>(n)] = core::Label::GROUND;
-  for (const pcl::index_t n : objects.indices) labels[static_cast<std::size_t>(n)] = core::Label::OBJECT;
-  return labels;
-}
 
 void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& points) {
   const auto finite = [](const Point& p) {
@@ -25,7 +20,39 @@ void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& p
                     " points is finite; at least one has to be");
 }
 
+/// The elevation grid in the frame of a method that makes none itself.
+core::ElevationGrid elevationOf(const Cloud& cloud, const Segmenter& segmenter) {
+  const impl::IndexedPoints<Point> all(*cloud.points, nullptr);
+  core::Points points = all.finitePoints();
+  const std::vector<Eigen::Index> far = core::findFarPoints(points, core::summarise(points));
+  for (auto n = far.rbegin(); n != far.rend(); ++n) {
+    points.col(*n) = points.rightCols<1>();
+    points.conservativeResize(Eigen::NoChange, points.cols() - 1);
+  }
+  const core::Points level = core::transformed(std::move(points), segmenter.filter->getFrame());
+  return core::rasteriseHighest(level, core::gridAround(core::boundsOf(level), segmenter.cell_size));
+}
+
+/// A ground surface at the cells of the elevation, whatever cells it has itself.
+core::GroundSurface atCells(const core::GroundSurface& surface, const core::GridGeometry& cells) {
+  core::GroundSurface result{surface.frame_from_input, cells, Eigen::ArrayXXd(cells.rows, cells.cols)};
+  for (Eigen::Index j = 0; j < cells.cols; ++j)
+    for (Eigen::Index i = 0; i < cells.rows; ++i) {
+      const Eigen::Vector2d place(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
+      const Eigen::Vector2d centre = cells.origin + cells.cell_size * place;
+      result.height(i, j) = surface.heightAt(centre.x(), centre.y());
+    }
+  return result;
+}
+
 }  // namespace
+
+core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects) {
+  core::Labels labels(count, core::Label::NEITHER);
+  for (const pcl::index_t n : ground.indices) labels[static_cast<std::size_t>(n)] = core::Label::GROUND;
+  for (const pcl::index_t n : objects.indices) labels[static_cast<std::size_t>(n)] = core::Label::OBJECT;
+  return labels;
+}
 
 Segmentation segmentCloud(const std::string& path, const Cloud& cloud, Segmenter& segmenter) {
   requireFinitePoint(path, *cloud.points);
@@ -34,8 +61,9 @@ Segmentation segmentCloud(const std::string& path, const Cloud& cloud, Segmenter
   segmenter.filter->segment(result.ground, result.objects);
   if (!segmenter.filter->getError().empty()) throw WorkError(path + ": " + segmenter.filter->getError());
   result.labels = labelsOf(cloud.points->size(), result.ground, result.objects);
-  result.elevation = segmenter.fft->getElevationGrid();
-  result.surface = segmenter.fft->getGroundSurface();
+  result.elevation =
+      segmenter.fft != nullptr ? segmenter.fft->getElevationGrid() : elevationOf(cloud, segmenter);
+  result.surface = atCells(segmenter.filter->getGroundSurface(), result.elevation.geometry);
   if (!cloud.labels.empty()) result.confusion = core::compare(cloud.labels, result.labels);
   return result;
 }

@@ -34,6 +34,9 @@ struct Segmentation {
   std::optional<core::Confusion> confusion;  ///< against the input's labels, if it has some
 };
 
+/// A label per point of a cloud of `count` points: NEITHER where it is in neither list.
+core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects);
+
 /** Splits a cloud into ground and objects.
  * \throws WorkError naming the file if it holds no finite point or the method cannot work on it
  */

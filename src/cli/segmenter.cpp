@@ -7,10 +7,15 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "command_line.h"
 #include "errors.h"
+#include "pcl_fft_ground/graph_cut_ground_segmentation.h"
+#include "pcl_fft_ground/grid_ground_segmentation.h"
+#include "pcl_fft_ground/naive_ground_segmentation.h"
+#include "pcl_fft_ground/planar_ground_segmentation.h"
 #include "scanner.h"
 
 namespace pcl_fft_ground::cli {
@@ -44,18 +49,6 @@ std::string nameOf(Value value, const std::array<std::pair<const char*, Value>, 
   return std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.second == value; })->first;
 }
 
-/// Calls a setter if its option was given; its complaint becomes one about the option.
-template <typename Value, typename Setter>
-void apply(const po::variables_map& values, const std::string& option, const Setter& set) {
-  if (values.count(option) == 0) return;
-  try {
-    set(values[option].as<Value>());
-  } catch (const pcl::PCLException& problem) {
-    const std::string message = problem.what();  // "Class: parameter is value, must be range"
-    throw UsageError("--" + option + message.substr(message.rfind(": ")));
-  }
-}
-
 Eigen::Vector3d toDirection(const std::string& text) {
   std::string_view rest = text;
   const std::optional<double> x = parseNumber<double>(takeWord(rest)),
@@ -66,118 +59,192 @@ Eigen::Vector3d toDirection(const std::string& text) {
   return {*x, *y, *z};
 }
 
-void setUpFrame(GroundSegmentation<Point>& filter, const po::variables_map& values) {
-  apply<std::string>(values, "up-direction", [&](const auto& v) { filter.setUpDirection(toDirection(v)); });
-  apply<std::string>(values, "up-estimation", [&](const auto& v) {
-    filter.setUpEstimation(valueNamed("up-estimation", v, UP_ESTIMATIONS));
-  });
-  apply<std::string>(values, "yaw", [&](const auto& v) { filter.setYaw(valueNamed("yaw", v, YAWS)); });
-}
-
-/// A count that the parser would take from "-1" as a huge one is refused by its sign.
-unsigned toUnsigned(const std::string& option, long long value) {
-  if (value < 0 || value > 1000000000)
-    throw UsageError("--" + option + " " + std::to_string(value) +
-                     ": allowed is a whole number from 0 to 1e9");
-  return static_cast<unsigned>(value);
-}
-
-void setUpFFT(FFTGroundSegmentation<Point>& fft, const po::variables_map& values) {
-  if (values.count("max-object-size") != 0 && values.count("relative-max-object-size") != 0)
-    throw UsageError("--max-object-size and --relative-max-object-size: allowed is one of the two");
-  apply<double>(values, "cell-size", [&](double v) { fft.setCellSize(v); });
-  apply<double>(values, "max-object-size", [&](double v) { fft.setMaximumObjectSize(v); });
-  apply<double>(values, "relative-max-object-size", [&](double v) { fft.setRelativeMaximumObjectSize(v); });
-  apply<double>(values, "height-tolerance", [&](double v) { fft.setHeightTolerance(v); });
-  apply<double>(values, "cutoff-frequency", [&](double v) { fft.setCutoffFrequency(v); });
-  apply<long long>(values, "filter-order",
-                   [&](long long v) { fft.setFilterOrder(toUnsigned("filter-order", v)); });
-  apply<double>(values, "passband-ripple", [&](double v) { fft.setPassbandRipple(v); });
-  apply<long long>(values, "peak-window",
-                   [&](long long v) { fft.setPeakWindow(toUnsigned("peak-window", v)); });
-  apply<double>(values, "peak-threshold", [&](double v) { fft.setPeakThreshold(v); });
-  if (values["exact-grid"].as<bool>()) fft.setGridLengths(core::GridLengths::EXACT);
-}
-
 std::vector<double> asList(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+/// Sets the parameters of one filter from the options and notes which value is in force, and why.
+class ParameterSetter {
+ public:
+  ParameterSetter(const po::variables_map& values, ordered_json& noted) : values_(values), noted_(noted) {}
+
+  /// Calls the setter if the option was given; its complaint becomes one about the option. Then notes the
+  /// getter's value.
+  template <typename Value, typename Set, typename Get>
+  void set(const std::string& option, const Set& setter, const Get& getter) {
+    const bool given = values_.count(option) != 0 && !values_[option].defaulted();
+    try {
+      if (given) setter(values_[option].as<Value>());
+    } catch (const pcl::PCLException& problem) {
+      const std::string message = problem.what();  // "Class: parameter is value, must be range"
+      throw UsageError("--" + option + message.substr(message.rfind(": ")));
+    }
+    const auto value = getter();
+    if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>)
+      if (std::isnan(value)) return;  // not in force
+    noted_[option] = {{"value", value}, {"from", given ? "option" : "default"}};
+  }
+
+  /// A count, read as a signed number because the parser would take -1 for the largest unsigned one.
+  template <typename Set, typename Get>
+  void setCount(const std::string& option, const Set& setter, const Get& getter) {
+    set<long long>(
+        option,
+        [&](long long value) {
+          if (value < 0 || value > 1000000000)
+            throw UsageError("--" + option + " " + std::to_string(value) +
+                             ": allowed is a whole number from 0 to 1e9");
+          setter(static_cast<unsigned>(value));
+        },
+        getter);
+  }
+
+ private:
+  const po::variables_map& values_;
+  ordered_json& noted_;
+};
+
+void setUpCommon(GroundSegmentation<Point>& filter, ParameterSetter& parameters) {
+  parameters.set<std::string>(
+      "up-direction", [&](const auto& v) { filter.setUpDirection(toDirection(v)); },
+      [&] { return asList(filter.getUpDirection()); });
+  parameters.set<std::string>(
+      "up-estimation",
+      [&](const auto& v) { filter.setUpEstimation(valueNamed("up-estimation", v, UP_ESTIMATIONS)); },
+      [&] { return nameOf(filter.getUpEstimation(), UP_ESTIMATIONS); });
+  parameters.set<std::string>(
+      "yaw", [&](const auto& v) { filter.setYaw(valueNamed("yaw", v, YAWS)); },
+      [&] { return nameOf(filter.getYaw(), YAWS); });
+  parameters.set<double>(
+      "height-tolerance", [&](double v) { filter.setHeightTolerance(v); },
+      [&] { return filter.getHeightTolerance(); });
+}
+
+void setUp(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
+  parameters.set<double>(
+      "cell-size", [&](double v) { fft.setCellSize(v); }, [&] { return fft.getCellSize(); });
+  parameters.set<double>(
+      "max-object-size", [&](double v) { fft.setMaximumObjectSize(v); },
+      [&] { return fft.getMaximumObjectSize(); });
+  parameters.set<double>(
+      "relative-max-object-size", [&](double v) { fft.setRelativeMaximumObjectSize(v); },
+      [&] { return fft.getRelativeMaximumObjectSize(); });
+  parameters.set<double>(
+      "cutoff-frequency", [&](double v) { fft.setCutoffFrequency(v); },
+      [&] { return fft.getCutoffFrequency(); });
+  parameters.setCount(
+      "filter-order", [&](unsigned v) { fft.setFilterOrder(v); }, [&] { return fft.getFilterOrder(); });
+  parameters.set<double>(
+      "passband-ripple", [&](double v) { fft.setPassbandRipple(v); },
+      [&] { return fft.getPassbandRipple(); });
+  parameters.setCount(
+      "peak-window", [&](unsigned v) { fft.setPeakWindow(v); }, [&] { return fft.getPeakWindow(); });
+  parameters.set<double>(
+      "peak-threshold", [&](double v) { fft.setPeakThreshold(v); }, [&] { return fft.getPeakThreshold(); });
+  parameters.set<bool>(
+      "exact-grid",
+      [&](bool exact) {
+        if (exact) fft.setGridLengths(core::GridLengths::EXACT);
+      },
+      [&] { return fft.getGridLengths() == core::GridLengths::EXACT; });
+}
+
+void setUp(NaiveGroundSegmentation<Point>&, ParameterSetter&) {}
+
+void setUp(PlanarGroundSegmentation<Point>& planar, ParameterSetter& parameters) {
+  parameters.set<double>(
+      "distance-threshold", [&](double v) { planar.setDistanceThreshold(v); },
+      [&] { return planar.getDistanceThreshold(); });
+  parameters.setCount(
+      "max-iterations", [&](unsigned v) { planar.setMaxIterations(static_cast<int>(v)); },
+      [&] { return planar.getMaxIterations(); });
+  parameters.set<double>(
+      "probability", [&](double v) { planar.setProbability(v); }, [&] { return planar.getProbability(); });
+  parameters.setCount(
+      "plane-seed", [&](unsigned v) { planar.setSeed(v); }, [&] { return planar.getSeed(); });
+}
+
+void setUp(GridGroundSegmentation<Point>& grid, ParameterSetter& parameters) {
+  parameters.set<double>(
+      "cell-size", [&](double v) { grid.setCellSize(v); }, [&] { return grid.getCellSize(); });
+  parameters.set<double>(
+      "voxel-height", [&](double v) { grid.setVoxelHeight(v); }, [&] { return grid.getVoxelHeight(); });
+}
+
+void setUp(GraphCutGroundSegmentation<Point>& cut, ParameterSetter& parameters) {
+  parameters.set<double>(
+      "cell-size", [&](double v) { cut.setCellSize(v); }, [&] { return cut.getCellSize(); });
+  parameters.set<double>(
+      "max-object-size", [&](double v) { cut.setMaximumObjectSize(v); },
+      [&] { return cut.getMaximumObjectSize(); });
+  parameters.set<double>(
+      "object-height", [&](double v) { cut.setObjectHeight(v); }, [&] { return cut.getObjectHeight(); });
+  parameters.set<double>(
+      "step-height", [&](double v) { cut.setStepHeight(v); }, [&] { return cut.getStepHeight(); });
+  parameters.set<double>(
+      "smoothness", [&](double v) { cut.setSmoothness(v); }, [&] { return cut.getSmoothness(); });
+}
+
+template <typename Filter>
+Segmenter make(const std::string& method, const po::variables_map& values) {
+  Segmenter segmenter;
+  segmenter.method = method;
+  auto filter = std::make_unique<Filter>();
+  ParameterSetter parameters(values, segmenter.parameters);
+  setUpCommon(*filter, parameters);
+  setUp(*filter, parameters);
+  if constexpr (std::is_same_v<Filter, FFTGroundSegmentation<Point>>) segmenter.fft = filter.get();
+  segmenter.filter = std::move(filter);
+  return segmenter;
+}
+
+/// The side of an elevation cell, which the pictures want of methods, too, that have no use for it.
+double cellSize(const po::variables_map& values) {
+  FFTGroundSegmentation<Point> checking;
+  ordered_json noted;
+  ParameterSetter(values, noted)
+      .set<double>(
+          "cell-size", [&](double v) { checking.setCellSize(v); }, [&] { return checking.getCellSize(); });
+  return checking.getCellSize();
+}
+
+using Maker = Segmenter (*)(const std::string&, const po::variables_map&);
+
+const std::vector<std::pair<std::string, Maker>>& methods() {
+  static const std::vector<std::pair<std::string, Maker>> makers{
+      {"naive", make<NaiveGroundSegmentation<Point>>},
+      {"planar", make<PlanarGroundSegmentation<Point>>},
+      {"grid", make<GridGroundSegmentation<Point>>},
+      {"graph-cut", make<GraphCutGroundSegmentation<Point>>},
+      {"fft-lowpass", make<FFTGroundSegmentation<Point>>},
+      {"fft", make<FFTGroundSegmentation<Point>>}};
+  return makers;
+}
+
 }  // namespace
 
-const char* const METHODS = "fft, fft-lowpass";
-
-po::options_description segmenterOptions() {
-  po::options_description options("Segmentation", HELP_WIDTH, HELP_TEXT_WIDTH);
-  const auto number = [] { return po::value<double>(); };
-  auto add = options.add_options();
-  add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
-      "how ground is told from objects: fft or fft-lowpass, at present both the published low-pass");
-  add("cell-size", number()->value_name("M"), "side of an elevation cell [m], above 0 (0.02)");
-  add("max-object-size", number()->value_name("M"),
-      "size of the largest object [m], above 0: anything larger is ground");
-  add("relative-max-object-size", number()->value_name("SHARE"),
-      "the same as a share of the scan's smaller horizontal extent, in (0, 1] (0.5)");
-  add("height-tolerance", number()->value_name("M"),
-      "height above the ground up to which a point is ground [m] (0)");
-  add("up-direction", po::value<std::string>()->value_name("X Y Z"),
-      "direction of positive elevation (0 0 1)");
-  add("up-estimation", po::value<std::string>()->value_name("NAME"),
-      "principal-axis: the direction in which the points vary least, turned towards --up-direction; "
-      "given: --up-direction itself; auto: the principal axis where it can be trusted (principal-axis)");
-  add("yaw", po::value<std::string>()->value_name("NAME"),
-      "how the grid is turned about up: min-area-rectangle, principal-axes or none (min-area-rectangle)");
-  add("cutoff-frequency", number()->value_name("RATIO"),
-      "cut-off as a ratio of the Nyquist range, up to 1.414, in place of the automatic one; 0: automatic "
-      "(0)");
-  add("filter-order", po::value<long long>()->value_name("N"), "order of the low-pass, 1 to 100 (2)");
-  add("passband-ripple", number()->value_name("DB"),
-      "attenuation at the cut-off [dB], above 0 up to 100 (3)");
-  add("peak-window", po::value<long long>()->value_name("K"),
-      "a peak of the spectrum is the largest of (2 K + 1) x (2 K + 1) bins, 1 to 1000 (1)");
-  add("peak-threshold", number()->value_name("C"),
-      "by how much a peak exceeds the other bins, at least 0 (0)");
-  add("exact-grid", po::bool_switch(), "leave the grid's axes as they are, not lengthened to fast lengths");
-  return options;
+const std::vector<std::string>& methodNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> result;
+    for (const auto& [name, maker] : methods()) result.push_back(name);
+    return result;
+  }();
+  return names;
 }
 
-Segmenter makeSegmenter(const po::variables_map& values) {
-  const auto method = values["method"].as<std::string>();
-  if (method != "fft" && method != "fft-lowpass")
-    throw UsageError("--method " + method + ": allowed is one of " + METHODS);
-  auto fft = std::make_unique<FFTGroundSegmentation<Point>>();
-  setUpFrame(*fft, values);
-  setUpFFT(*fft, values);
-  FFTGroundSegmentation<Point>* const view = fft.get();
-  return {method, std::move(fft), view, view->getCellSize()};
-}
-
-ordered_json describeParameters(const Segmenter& segmenter, const po::variables_map& values) {
-  ordered_json parameters;
-  const auto add = [&](const std::string& option, const ordered_json& value) {
-    const bool given = values.count(option) != 0 && !values[option].defaulted();
-    parameters[option] = {{"value", value}, {"from", given ? "option" : "default"}};
-  };
-  const GroundSegmentation<Point>& filter = *segmenter.filter;
-  add("method", segmenter.method);
-  add("up-direction", asList(filter.getUpDirection()));
-  add("up-estimation", nameOf(filter.getUpEstimation(), UP_ESTIMATIONS));
-  add("yaw", nameOf(filter.getYaw(), YAWS));
-  add("cell-size", segmenter.cell_size);
-  const FFTGroundSegmentation<Point>& fft = *segmenter.fft;
-  if (std::isnan(fft.getMaximumObjectSize()))
-    add("relative-max-object-size", fft.getRelativeMaximumObjectSize());
-  else
-    add("max-object-size", fft.getMaximumObjectSize());
-  add("height-tolerance", fft.getHeightTolerance());
-  add("cutoff-frequency",
-      values.count("cutoff-frequency") != 0 ? values["cutoff-frequency"].as<double>() : 0.0);
-  add("filter-order", fft.getFilterOrder());
-  add("passband-ripple", fft.getPassbandRipple());
-  add("peak-window", fft.getPeakWindow());
-  add("peak-threshold", fft.getPeakThreshold());
-  add("exact-grid", fft.getGridLengths() == core::GridLengths::EXACT);
-  return parameters;
+Segmenter makeSegmenter(const std::string& method, const po::variables_map& values) {
+  if (values.count("max-object-size") != 0 && values.count("relative-max-object-size") != 0)
+    throw UsageError("--max-object-size and --relative-max-object-size: allowed is one of the two");
+  std::string allowed;
+  for (const auto& [name, maker] : methods()) {
+    if (name == method) {
+      Segmenter segmenter = maker(method, values);
+      segmenter.cell_size = cellSize(values);
+      return segmenter;
+    }
+    allowed += (allowed.empty() ? "" : ", ") + name;
+  }
+  throw UsageError("method " + method + ": allowed is one of " + allowed);
 }
 
 }  // namespace pcl_fft_ground::cli

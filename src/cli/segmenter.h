@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "pcl_fft_ground/fft_ground_segmentation.h"
 
@@ -17,22 +18,20 @@ using Point = pcl::PointXYZ;
 struct Segmenter {
   std::string method;                                 ///< as spelled on the command line
   std::unique_ptr<GroundSegmentation<Point>> filter;  ///< ready but for its input
-  FFTGroundSegmentation<Point>* fft = nullptr;  ///< the same object where it works in the frequency domain
-  double cell_size = 0;                         ///< side of an elevation cell [m]
+  FFTGroundSegmentation<Point>* fft = nullptr;        ///< the same object if it works in the frequency domain
+  double cell_size = 0;                               ///< side of an elevation cell [m]
+  nlohmann::ordered_json parameters;  ///< those in force: option -> {"value", "from": "option" or "default"}
 };
 
-/// The methods that `--method` takes, for help texts and messages.
-extern const char* const METHODS;
+/// The methods that there are, by the names that the command line gives them, in the order of the paper's
+/// tables.
+const std::vector<std::string>& methodNames();
 
-/// The options that choose and set a segmenter; they are spelled as the setters.
+/// The options that set a segmenter; they are spelled as the setters.
 boost::program_options::options_description segmenterOptions();
 
-/// The segmenter that the options describe.
+/// A segmenter with the options that concern its method; those of other methods are passed over.
 /// \throws UsageError naming the option, the value and what is allowed
-Segmenter makeSegmenter(const boost::program_options::variables_map& values);
-
-/// The parameters in force, by option, each {"value": ..., "from": "option" or "default"}.
-nlohmann::ordered_json describeParameters(const Segmenter& segmenter,
-                                          const boost::program_options::variables_map& values);
+Segmenter makeSegmenter(const std::string& method, const boost::program_options::variables_map& values);
 
 }  // namespace pcl_fft_ground::cli

@@ -21,6 +21,27 @@ double Confusion::trueNegativeRate() const {
   return share(true_negatives, true_negatives + false_positives);
 }
 
+double Confusion::precision() const {
+  return share(true_positives, true_positives + false_positives);
+}
+
+double Confusion::intersectionOverUnion() const {
+  return share(true_positives, true_positives + false_positives + false_negatives);
+}
+
+double Confusion::totalError() const {
+  return share(false_positives + false_negatives,
+               true_positives + false_positives + true_negatives + false_negatives);
+}
+
+double Confusion::kappa() const {
+  const auto tp = static_cast<double>(true_positives), fp = static_cast<double>(false_positives);
+  const auto tn = static_cast<double>(true_negatives), fn = static_cast<double>(false_negatives);
+  const double total = tp + fp + tn + fn;
+  const double by_chance = ((tp + fp) * (tp + fn) + (tn + fn) * (tn + fp)) / (total * total);
+  return (1 - totalError() - by_chance) / (1 - by_chance);
+}
+
 double Confusion::f1() const {
   return share(2 * true_positives, 2 * true_positives + false_positives + false_negatives);
 }

@@ -19,6 +19,14 @@ struct Confusion {
   PCL_FFT_GROUND_CORE_EXPORT double truePositiveRate() const;
   /// Share of the ground that was found; NaN without ground.
   PCL_FFT_GROUND_CORE_EXPORT double trueNegativeRate() const;
+  /// Share of the points called objects that are some; NaN if none was called one.
+  PCL_FFT_GROUND_CORE_EXPORT double precision() const;
+  /// Intersection over union of the objects; NaN if there is none and none was called one.
+  PCL_FFT_GROUND_CORE_EXPORT double intersectionOverUnion() const;
+  /// Share of wrong labels; NaN without points.
+  PCL_FFT_GROUND_CORE_EXPORT double totalError() const;
+  /// Cohen's kappa: agreement beyond chance; NaN where chance alone explains everything.
+  PCL_FFT_GROUND_CORE_EXPORT double kappa() const;
   /// Harmonic mean of precision and true positive rate; NaN if there is no object and none was called one.
   PCL_FFT_GROUND_CORE_EXPORT double f1() const;
 };

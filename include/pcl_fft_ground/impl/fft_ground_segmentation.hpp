@@ -15,15 +15,13 @@ FFTGroundSegmentation<PointT>::FFTGroundSegmentation(bool extract_removed_indice
 
 template <typename PointT>
 void FFTGroundSegmentation<PointT>::setCellSize(double cell_size) {
-  this->requireParameter(std::isfinite(cell_size) && cell_size > 0, "cell size", cell_size,
-                         "a finite number of metres above 0");
+  this->requireLength("cell size", cell_size);
   parameters_.cell_size = cell_size;
 }
 
 template <typename PointT>
 void FFTGroundSegmentation<PointT>::setMaximumObjectSize(double size) {
-  this->requireParameter(std::isfinite(size) && size > 0, "maximum object size", size,
-                         "a finite number of metres above 0");
+  this->requireLength("maximum object size", size);
   parameters_.max_object_size = size;
 }
 
@@ -43,13 +41,6 @@ template <typename PointT>
 double FFTGroundSegmentation<PointT>::getRelativeMaximumObjectSize() const {
   return parameters_.max_object_size ? std::numeric_limits<double>::quiet_NaN()
                                      : parameters_.relative_max_object_size;
-}
-
-template <typename PointT>
-void FFTGroundSegmentation<PointT>::setHeightTolerance(double tolerance) {
-  this->requireParameter(std::isfinite(tolerance), "height tolerance", tolerance,
-                         "a finite number of metres");
-  height_tolerance_ = tolerance;
 }
 
 template <typename PointT>
@@ -98,7 +89,7 @@ core::Labels FFTGroundSegmentation<PointT>::labelPoints(const core::Points& poin
   if (points.cols() == 0) return {};
   ground_ = core::estimateLowPassGround(points, frame_from_input, parameters_);
   warnOfDoubts();
-  return core::labelByHeight(points, ground_.surface, height_tolerance_);
+  return core::labelByHeight(points, ground_.surface, this->getHeightTolerance());
 }
 
 template <typename PointT>

@@ -4,6 +4,7 @@
 #include <pcl/exceptions.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <sstream>
 #include <utility>
@@ -48,6 +49,7 @@ template <typename PointT>
 GroundSegmentation<PointT>::GroundSegmentation(const GroundSegmentation& other)
     : pcl::FilterIndices<PointT>(other),
       frame_parameters_(other.frame_parameters_),
+      height_tolerance_(other.height_tolerance_),
       frame_from_input_(other.frame_from_input_),
       far_points_(other.far_points_),
       error_(other.error_),
@@ -61,6 +63,7 @@ GroundSegmentation<PointT>& GroundSegmentation<PointT>::operator=(const GroundSe
   pcl::FilterIndices<PointT>::operator=(other);
   if (fake_indices_) indices_.reset();
   frame_parameters_ = other.frame_parameters_;
+  height_tolerance_ = other.height_tolerance_;
   frame_from_input_ = other.frame_from_input_;
   far_points_ = other.far_points_;
   error_ = other.error_;
@@ -90,6 +93,12 @@ void GroundSegmentation<PointT>::setUpDirection(const Eigen::Vector3d& up) {
 }
 
 template <typename PointT>
+void GroundSegmentation<PointT>::setHeightTolerance(double tolerance) {
+  requireParameter(std::isfinite(tolerance), "height tolerance", tolerance, "a finite number of metres");
+  height_tolerance_ = tolerance;
+}
+
+template <typename PointT>
 void GroundSegmentation<PointT>::warn(const std::string& sentence) {
   warnings_.push_back(sentence);
   PCL_WARN("[pcl_fft_ground::%s] %s\n", filter_name_.c_str(), sentence.c_str());
@@ -102,6 +111,11 @@ void GroundSegmentation<PointT>::requireParameter(bool valid, const std::string&
   std::ostringstream message;
   message << filter_name_ << ": " << parameter << " is " << value << ", must be " << range;
   throw pcl::PCLException(message.str());
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::requireLength(const std::string& parameter, double value) const {
+  requireParameter(std::isfinite(value) && value > 0, parameter, value, "a finite number of metres above 0");
 }
 
 template <typename PointT>
