@@ -51,8 +51,8 @@ Canvas startMap(const MapPage& page, const std::string& title, const Pixels& map
   const Rectangle& area = page.plot.area;
   canvas.image(area, map);
   drawFrame(canvas, page.plot);
-  drawLowerAxis(canvas, page.plot, ticksFor(page.plot.x, area.width, 90.0), "x [m]");
-  drawLeftAxis(canvas, page.plot, ticksFor(page.plot.y, area.height, 55.0), "y [m]");
+  drawLowerAxis(canvas, page.plot, ticksFor(page.plot.x, area.width, 90.0), "x in the level frame [m]");
+  drawLeftAxis(canvas, page.plot, ticksFor(page.plot.y, area.height, 55.0), "y in the level frame [m]");
   TextStyle style{17.0, Anchor::MIDDLE, kInk, Weight::BOLD};
   style.max_width = page.width - 30.0;
   canvas.text({0.5 * page.width, 28.0}, title, style);

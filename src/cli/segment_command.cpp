@@ -112,6 +112,16 @@ std::string required(const po::variables_map& values, const std::string& option,
   return values[option].as<std::string>();
 }
 
+/// The warnings of the filter, and one where the clustering found nothing.
+std::vector<std::string> warningsOf(const Segmenter& segmenter, const Segmentation& segmentation,
+                                    const ClusterParameters& clusters) {
+  std::vector<std::string> warnings = segmenter.filter->getWarnings();
+  if (segmentation.clusters.empty() && segmentation.objects.indices.size() >= clusters.min_cluster_size)
+    warnings.push_back("no segment has " + std::to_string(clusters.min_cluster_size) +
+                       " points: a larger --leaf-size or a smaller --min-cluster-size may help");
+  return warnings;
+}
+
 void segment(const po::variables_map& values) {
   const std::string input = required(values, "cloud", "cloud given: name a PCD, PLY or text file");
   const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
@@ -136,10 +146,12 @@ void segment(const po::variables_map& values) {
   progress.end();
 
   const ordered_json parameters = describeClusterParameters(segmenter.parameters, clusters, values);
-  const ordered_json report = makeReport(input, cloud, segmenter, segmentation, parameters, progress);
+  const std::vector<std::string> warnings = warningsOf(segmenter, segmentation, clusters);
+  const ordered_json report =
+      makeReport(input, cloud, segmenter, segmentation, parameters, warnings, progress);
   const std::string text = asText(report);
   writeText(directory + "/report.json", text);
-  for (const std::string& warning : segmenter.filter->getWarnings())
+  for (const std::string& warning : warnings)
     if (!quiet) std::cerr << "pcl_fft_ground: warning: " << input << ": " << warning << '\n';
   if (values["json"].as<bool>())
     std::cout << text;

@@ -96,7 +96,8 @@ void printShare(std::ostream& out, const ordered_json& counts, const char* name)
 }  // namespace
 
 ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segmenter& segmenter,
-                        const Segmentation& segmentation, ordered_json parameters, const Progress& progress) {
+                        const Segmentation& segmentation, ordered_json parameters,
+                        const std::vector<std::string>& warnings, const Progress& progress) {
   ordered_json seconds;
   for (const auto& [stage, time] : progress.seconds()) seconds[stage] = time;
   return {{"input", input},
@@ -108,7 +109,7 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
           {"elevation", describeElevation(segmentation.elevation)},
           {"spectrum", describeSpectrum(segmenter.fft)},
           {"scores", describeScores(segmentation.confusion)},
-          {"warnings", segmenter.filter->getWarnings()},
+          {"warnings", warnings},
           {"seconds", seconds}};
 }
 

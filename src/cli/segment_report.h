@@ -13,7 +13,7 @@ namespace pcl_fft_ground::cli {
 /// The content of report.json. Numbers that do not exist (a rate without objects) are null.
 nlohmann::ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segmenter& segmenter,
                                   const Segmentation& segmentation, nlohmann::ordered_json parameters,
-                                  const Progress& progress);
+                                  const std::vector<std::string>& warnings, const Progress& progress);
 
 /// A report as JSON text, a line to each value. A file name that is no UTF-8 gets replacement characters.
 std::string asText(const nlohmann::ordered_json& report);

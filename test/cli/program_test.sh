@@ -2,7 +2,7 @@
 # What only the program itself shows: exit codes, its two streams, and outputs that stay whole.
 # Usage: program_test.sh PROGRAM VERSION
 set -u
-program=$1
+program=$(realpath -e "$1") || exit 1
 version=$2
 folder=$(mktemp -d) || exit 1
 trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT

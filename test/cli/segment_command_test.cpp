@@ -192,6 +192,14 @@ TEST_F(SegmentCommand, SegmentsAreDescribedByTheirPoints) {
   EXPECT_EQ(report()["counts"]["segments"], row);
 }
 
+/// How many labels differ; all if the numbers of labels do.
+std::size_t differing(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() != b.size()) return std::max(a.size(), b.size());
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) count += a[n] != b[n] ? 1 : 0;
+  return count;
+}
+
 /// A turned and tilted scan: neither axis of the grid is one of the input.
 pcl::PointCloud<pcl::PointXYZ> turnedScan() {
   pcl::PointCloud<pcl::PointXYZ> cloud;
@@ -345,8 +353,10 @@ TEST_F(SegmentCommand, TextOfNumbersIsRead) {
   text << "# a scan\nx,y,z,label\n";
   for (const pcl::PointXYZL& p : boxScan()) text << p.x << ',' << p.y << ',' << p.z << ',' << p.label << '\n';
   segment(makeFile("scan.csv", text.str()));
-  EXPECT_EQ(labels().size(), 10000u);
-  EXPECT_GT(report()["scores"]["tpr"], 0.9);
+  const std::vector<double> from_text = labels();
+  EXPECT_FALSE(report()["scores"].is_null());
+  segment(makeScan());
+  EXPECT_LT(differing(from_text, labels()), 100u);  // the text has six digits
 }
 
 TEST_F(SegmentCommand, LargeCoordinatesKeepTheirCentimetres) {
@@ -373,10 +383,17 @@ TEST_F(SegmentCommand, UpMayBeDown) {
   pcl::PointCloud<pcl::PointXYZL> cloud = boxScan();
   for (pcl::PointXYZL& p : cloud) p.z = -p.z;
   segment(makeCloud("ceiling.pcd", cloud), {"--up-direction", "0", "0", "-1"});
-  EXPECT_GT(report()["scores"]["tpr"], 0.9);
   EXPECT_LT(report()["frame_from_input"][2][2], -0.9);
-  segment(makeCloud("ceiling.pcd", cloud));
-  EXPECT_LT(report()["scores"]["tpr"], 0.1);
+  FFTGroundSegmentation<pcl::PointXYZ> filter;
+  filter.setUpDirection({0, 0, -1});
+  pcl::PointIndices ground, objects;
+  runFilter(cloud, filter, ground, objects);
+  const std::vector<double> label = labels();
+  for (const pcl::index_t n : ground.indices) ASSERT_EQ(label[static_cast<std::size_t>(n)], 0) << n;
+  for (const pcl::index_t n : objects.indices) ASSERT_EQ(label[static_cast<std::size_t>(n)], 1) << n;
+  segment(pathOf("ceiling.pcd"));
+  EXPECT_GT(report()["frame_from_input"][2][2], 0.9);
+  EXPECT_GT(differing(label, labels()), 1000u);
 }
 
 TEST_F(SegmentCommand, AFarPointIsReportedAndChangesNoOtherLabel) {

@@ -167,8 +167,7 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   for (const Eigen::Index n : far)
     far_points_.push_back(points.index(positions.empty() ? static_cast<std::size_t>(n) : positions[n]));
   if (!far.empty())
-    warn(std::to_string(far.size()) +
-         " points lie too far from all others to belong to the scan: left out as objects");
+    warn("points too far from all others to belong to the scan, left out as objects: " + std::to_string(far.size()));
   if (labels.size() == points.size()) return labels;
 
   core::Labels scattered(points.size(), core::Label::NEITHER);
