@@ -10,7 +10,8 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-constexpr double ROUNDING = 1e-9;  // magnitudes below this share of the largest are rounding errors
+// Magnitudes below these shares of the largest beside DC, and of DC, are rounding errors.
+constexpr double ROUNDING = 1e-9, ROUNDING_OF_DC = 1e-13;
 
 /// Places of the other bins of a window, nearest first: nearly every bin loses against a near one.
 std::vector<Eigen::Array2i> windowOffsets(int half_window, Eigen::Index rows, Eigen::Index cols) {
@@ -33,8 +34,9 @@ Eigen::Index wrapped(Eigen::Index bin, Eigen::Index length) {
 
 /// The magnitudes that eq. (3) compares: rounding errors are zero, DC is below everything.
 Eigen::ArrayXXd comparable(Eigen::ArrayXXd m) {
+  const double dc = m(0, 0);
   m(0, 0) = -1;
-  const double smallest = ROUNDING * m.maxCoeff();
+  const double smallest = std::max(ROUNDING * m.maxCoeff(), ROUNDING_OF_DC * dc);
   m = (m < smallest).select(0.0, m);
   m(0, 0) = -std::numeric_limits<double>::infinity();
   return m;

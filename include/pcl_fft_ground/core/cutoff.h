@@ -26,10 +26,12 @@ struct PeakParameters {
  *
  * A bin is a peak if its magnitude exceeds that of every other bin of its window by more than c. The window
  * is periodic. DC is neither a candidate nor compared; a bin is not compared with its own conjugate;
- * magnitudes below 1e-9 of the largest are rounding errors and count as zero.
+ * magnitudes below 1e-9 of the largest beside DC, or below 1e-13 of DC, are rounding errors and count as
+ * zero.
  *
- * \param magnitude magnitudes of all bins, DC at (0, 0)
- * \return the peaks, both of each conjugate pair, by falling wavelength: sorted by radius, then l, then k
+ * \param magnitude magnitudes of all bins of a real grid, DC at (0, 0): bin (k, l) equals bin (rows - k, cols
+ * - l) \return the peaks, both of each conjugate pair, by falling wavelength: sorted by radius, then l, then
+ * k
  */
 PCL_FFT_GROUND_CORE_EXPORT std::vector<SpectrumPeak> findSpectrumPeaks(Eigen::ArrayXXd magnitude,
                                                                        const PeakParameters& parameters);
