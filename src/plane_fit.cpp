@@ -15,20 +15,30 @@ namespace {
 using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;
 
-/// PCL's plane model, with a seed of our own for its samples.
+/// PCL's plane model, with a seed of our own for its samples, and without its complaint about each bad one.
 class SeededPlaneModel : public pcl::SampleConsensusModelPlane<Point> {
  public:
   SeededPlaneModel(const Cloud::ConstPtr& cloud, std::uint32_t seed)
       : SampleConsensusModelPlane<Point>(cloud) {
     rng_alg_.seed(seed);
   }
+
+ protected:
+  /// PCL's own test: three points on a line, or almost in one place, are no sample.
+  bool isSampleGood(const pcl::Indices& samples) const override {
+    const auto place = [&](std::size_t n) {
+      return (*input_)[static_cast<std::size_t>(samples[n])].getVector3fMap();
+    };
+    const Eigen::Vector3f normal = (place(1) - place(0)).cross(place(2) - place(0));
+    // A little stricter than PCL, or rounding might let a sample pass here that it rejects later, and aloud.
+    return normal.stableNorm() > 1.01f * Eigen::NumTraits<float>::dummy_precision();
+  }
 };
 
 Cloud::Ptr sortedCloud(const core::Points& points) {
-  Cloud::Ptr cloud(new Cloud);
-  cloud->reserve(static_cast<std::size_t>(points.cols()));
+  Cloud::Ptr cloud(new Cloud(static_cast<std::uint32_t>(points.cols()), 1));
   for (Eigen::Index n = 0; n < points.cols(); ++n)
-    cloud->push_back({points(0, n), points(1, n), points(2, n)});
+    (*cloud)[static_cast<std::size_t>(n)].getVector3fMap() = points.col(n);
   std::sort(cloud->begin(), cloud->end(),
             [](const Point& a, const Point& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
   return cloud;
@@ -61,9 +71,10 @@ std::optional<core::Plane> fitPlane(const core::Points& points, const PlaneFitPa
 
   Eigen::VectorXf coefficients;
   mlesac.getModelCoefficients(coefficients);
-  if (parameters.optimize_coefficients) {
-    pcl::Indices inliers;
-    mlesac.getInliers(inliers);
+  pcl::Indices inliers;
+  mlesac.getInliers(inliers);
+  // The sample alone has nothing to add, and PCL says so on its console.
+  if (parameters.optimize_coefficients && inliers.size() > model->getSampleSize()) {
     const Eigen::VectorXf found = coefficients;
     model->optimizeModelCoefficients(inliers, found, coefficients);
   }

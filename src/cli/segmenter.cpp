@@ -244,7 +244,7 @@ Segmenter makeSegmenter(const std::string& method, const po::variables_map& valu
     }
     allowed += (allowed.empty() ? "" : ", ") + name;
   }
-  throw UsageError("method " + method + ": allowed is one of " + allowed);
+  throw UsageError("--method " + method + ": allowed is one of " + allowed);
 }
 
 }  // namespace pcl_fft_ground::cli

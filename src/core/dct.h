@@ -10,10 +10,10 @@ namespace pcl_fft_ground::core {
 
 /** Orthonormal cosine transform (DCT-II) of real lines of one length, and its inverse (DCT-III).
  *
- * Coefficient k of a line x is c_k sum_i x_i cos(pi (2 i + 1) k / (2 N)), c_0 = sqrt(1 / N), c_k = sqrt(2 / N):
- * the line continues evenly beyond its ends, without wrap-around. Two lines at a time go through one complex
- * FFT of their length (Makhoul 1980): O(N log N) for every N. An object holds its scratch space: one per
- * thread.
+ * Coefficient k of a line x is c_k sum_i x_i cos(pi (2 i + 1) k / (2 N)), c_0 = sqrt(1 / N), c_k = sqrt(2 /
+ * N): the line continues evenly beyond its ends, without wrap-around. Two lines at a time go through one
+ * complex FFT of their length (Makhoul 1980): O(N log N) for every N. An object holds its scratch space: one
+ * per thread.
  */
 class Dct {
  public:

@@ -2,15 +2,18 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <optional>
 
 #include "hull_filter.h"
 #include "pcl_fft_ground/core/convex_hull.h"
+#include "robust_up.h"
 
 namespace pcl_fft_ground::core {
 namespace {
 
 /// Direction of positive elevation, a unit vector.
-Eigen::Vector3d estimateUp(const Eigen::Matrix3d& covariance, const FrameParameters& parameters) {
+Eigen::Vector3d estimateUp(const PointsView& points, const Eigen::Matrix3d& covariance,
+                           const FrameParameters& parameters) {
   const Eigen::Vector3d given = parameters.up_direction.normalized();
   if (parameters.up_estimation == UpEstimation::GIVEN) return given;
 
@@ -20,11 +23,15 @@ Eigen::Vector3d estimateUp(const Eigen::Matrix3d& covariance, const FrameParamet
   if (no_plane) return given;
   const Eigen::Vector3d axis = solver.eigenvectors().col(0);
   const Eigen::Vector3d up = axis.dot(given) < 0 ? Eigen::Vector3d(-axis) : axis;
+  if (parameters.up_estimation == UpEstimation::PRINCIPAL_AXIS) return up;
 
   constexpr double FLATTEST_VARIANCE_RATIO = 0.04;  // a fifth, squared
   constexpr double MOST_LEANING = 0.7071;           // cosine of 45 degrees
   const bool trusted = variance[0] <= FLATTEST_VARIANCE_RATIO * variance[1] && up.dot(given) >= MOST_LEANING;
-  return parameters.up_estimation == UpEstimation::PRINCIPAL_AXIS || trusted ? up : given;
+  const Eigen::Vector3d fallback = trusted ? up : given;
+  constexpr double AGREEING = 0.9986;  // cosine of 3 degrees: all points then tell more precisely than half
+  const std::optional<Eigen::Vector3d> normal = normalOfFlattestHalf(points, given);
+  return normal && !(trusted && normal->dot(up) >= AGREEING) ? *normal : fallback;
 }
 
 /// The smallest rotation that turns a unit vector on to +z.
@@ -66,7 +73,8 @@ double estimateYaw(const PointsView& points, const PointStatistics& statistics,
 Eigen::Isometry3d estimateFrame(const PointsView& points, const PointStatistics& statistics,
                                 const FrameParameters& parameters) {
   if (points.cols() == 0) return Eigen::Isometry3d::Identity();
-  const Eigen::Matrix3d level_from_input = levelFromInput(estimateUp(statistics.covariance, parameters));
+  const Eigen::Matrix3d level_from_input =
+      levelFromInput(estimateUp(points, statistics.covariance, parameters));
   const double yaw = estimateYaw(points, statistics, level_from_input, parameters.yaw);
 
   Eigen::Isometry3d frame_from_input = Eigen::Isometry3d::Identity();

@@ -17,8 +17,7 @@ struct CellPoints {
 };
 
 /** A point for each cell by the statistic. The result does not depend on the order of the points. */
-CellPoints representativePoints(const PointsView& points, const GridGeometry& cells,
-                                CellStatistic statistic);
+CellPoints representativePoints(const PointsView& points, const GridGeometry& cells, CellStatistic statistic);
 
 /// A surface and the band around it in which points are ground.
 struct GroundBand {

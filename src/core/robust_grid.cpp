@@ -11,10 +11,10 @@ BilinearGrid::BilinearGrid(const GridGeometry& geometry)
     : geometry_(geometry), rows_(geometry.rows), per_metre_(1 / geometry.cell_size) {}
 
 Footing BilinearGrid::at(double x, double y) const {
-  const double u = std::clamp((x - geometry_.origin.x()) * per_metre_ - 0.5, 0.0,
-                              static_cast<double>(geometry_.rows - 1));
-  const double v = std::clamp((y - geometry_.origin.y()) * per_metre_ - 0.5, 0.0,
-                              static_cast<double>(geometry_.cols - 1));
+  const double u =
+      std::clamp((x - geometry_.origin.x()) * per_metre_ - 0.5, 0.0, static_cast<double>(geometry_.rows - 1));
+  const double v =
+      std::clamp((y - geometry_.origin.y()) * per_metre_ - 0.5, 0.0, static_cast<double>(geometry_.cols - 1));
   const Eigen::Index i = std::min(static_cast<Eigen::Index>(u), geometry_.rows - 2);
   const Eigen::Index j = std::min(static_cast<Eigen::Index>(v), geometry_.cols - 2);
   return {i + j * rows_, u - static_cast<double>(i), v - static_cast<double>(j)};

@@ -63,7 +63,8 @@ Spread lowestMode(const std::vector<double>& values, double reach) {
   const double bin = (high - low) / BINS;
   Histogram counts{};
   for (const double value : values)
-    if (value >= low && value <= high) ++counts[static_cast<std::size_t>(std::min((value - low) / bin, BINS - 1.0))];
+    if (value >= low && value <= high)
+      ++counts[static_cast<std::size_t>(std::min((value - low) / bin, BINS - 1.0))];
   const double mode = low + (static_cast<double>(lowestPeak(smoothed(counts))) + 0.5) * bin;
 
   std::vector<double> depths;

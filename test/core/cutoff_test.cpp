@@ -137,10 +137,14 @@ TEST(SpectrumPeaks, RoundingErrorsCountAsZero) {
   Eigen::ArrayXXd m = Eigen::ArrayXXd::Zero(8, 8);
   m(0, 4) = 1;
   m(4, 0) = 0.99e-9;
-  m(0, 0) = 1e6;  // DC is not what rounding errors are measured by
+  m(0, 0) = 1e3;  // its own rounding errors are smaller than those of the peak
   EXPECT_EQ(binsOf(findSpectrumPeaks(m, {})), (Bins{{0, 4}}));
   m(4, 0) = 1.01e-9;
   EXPECT_EQ(binsOf(findSpectrumPeaks(m, {})), (Bins{{4, 0}, {0, 4}}));
+  m(0, 0) = 1e6;  // and now larger
+  EXPECT_EQ(binsOf(findSpectrumPeaks(m, {})), (Bins{{0, 4}}));
+  m(0, 0) = 1e14;
+  EXPECT_TRUE(findSpectrumPeaks(m, {}).empty());
 }
 
 TEST(SpectrumPeaks, OfAnyWindowThatCoversTheGridAreTheSame) {

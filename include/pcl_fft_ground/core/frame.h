@@ -10,7 +10,7 @@ namespace pcl_fft_ground::core {
 
 /// How the direction of positive elevation is found.
 enum class UpEstimation {
-  AUTO,            ///< the principal axis where it can be trusted, otherwise the given direction
+  AUTO,            ///< the axis of the flattest half where it can be trusted, otherwise the given direction
   PRINCIPAL_AXIS,  ///< the direction in which the points vary least (Sec. IV-A)
   GIVEN,           ///< the given direction
 };
@@ -35,8 +35,11 @@ struct FrameParameters {
  * Up is the eigenvector of the smallest eigenvalue of the covariance, turned towards `up_direction`, or that
  * direction itself, and is brought on to +z by the smallest rotation; then the grid is turned about z. Where
  * the points determine no plane (fewer than three, identical or collinear ones) the given direction is used.
- * AUTO trusts the principal axis where the points are spread along it no more than a fifth as far as along
- * the next axis, and it leans by no more than 45 degrees from the given direction.
+ * AUTO takes the principal axis of that half of the points which lies closest to a plane: walls, tall objects
+ * and outliers do not tip it over. It is trusted where these points are spread along it no more than a tenth
+ * as far as along the next axis; otherwise the principal axis of all points is, where that share is at most a
+ * fifth. Where both are trusted and agree to 3 degrees, that of all points is taken.
+ * Neither is trusted if it leans by more than 45 degrees from the given direction, which then is used.
  *
  * \param points points in the input frame; an empty set gives the identity
  * \return rigid transform `frame_from_input`

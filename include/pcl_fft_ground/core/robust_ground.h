@@ -42,17 +42,17 @@ struct RobustChoice {
 
 /// The ground of a scan, how sure it is, and what led to it.
 struct RobustGround {
-  ElevationGrid elevation;         ///< height of each cell by the statistic
-  double extent = 0;               ///< smaller horizontal extent of the points [m]
-  double max_object_size = 0;      ///< m_u extent, or the size given [m]
-  GroundSurface surface;           ///< the ground
-  Mask supported;                  ///< cells with ground observed within the finest wavelength
-  Eigen::ArrayXXd uncertainty;     ///< standard deviation to be expected of the surface, per cell [m]
-  double scale = 0;                ///< spread of the ground points around the surface [m]
-  double tolerance = 0;            ///< an object is higher above the surface than this [m]
-  double slope_tolerance = 0;      ///< plus this times the local slope [m]
-  double depth_tolerance = 0;      ///< a point deeper below the surface than this is an object [m]
-  double finest_wavelength = 0;    ///< of the surface [m]
+  ElevationGrid elevation;            ///< height of each cell by the statistic
+  double extent = 0;                  ///< smaller horizontal extent of the points [m]
+  double max_object_size = 0;         ///< m_u extent, or the size given [m]
+  GroundSurface surface;              ///< the ground
+  Mask supported;                     ///< cells with ground observed within the finest wavelength
+  Eigen::ArrayXXd uncertainty;        ///< standard deviation to be expected of the surface, per cell [m]
+  double scale = 0;                   ///< spread of the ground points around the surface [m]
+  double tolerance = 0;               ///< an object is higher above the surface than this [m]
+  double slope_tolerance = 0;         ///< plus this times the local slope [m]
+  double depth_tolerance = 0;         ///< a point deeper below the surface than this is an object [m]
+  double finest_wavelength = 0;       ///< of the surface [m]
   std::vector<double> wavelengths;    ///< all scales, coarse to fine [m]
   std::vector<RobustChoice> choices;  ///< of the values that were not set
 };
@@ -62,9 +62,9 @@ struct RobustGround {
  *     minimise  sum_i w_i (y_i - s_i)^2 + sum_k P_k |s^_k|^2,   P_k = eps^2 (d / d_c)^(2n),
  *
  * where s^ is the cosine transform of the surface s, w is 0 for an empty cell, near 0 on an object and 1 on
- * the ground. With w = 1 everywhere this is the Butterworth power response of eq. (1). The weights follow from
- * the residuals of the current surface; it starts from the lower envelope at the largest object's size or,
- * with a maximum slope, from the cells that a growing morphological opening leaves.
+ * the ground. With w = 1 everywhere this is the Butterworth power response of eq. (1). The weights follow
+ * from the residuals of the current surface; it starts from the lower envelope at the largest object's size
+ * or, with a maximum slope, from the cells that a growing morphological opening leaves.
  *
  * \param level_points points in the level frame
  * \param frame_from_input the transform that brought them there, kept in the surface
