@@ -65,8 +65,16 @@ std::vector<Eigen::Vector2d> outermostPoints(const PointsView& points,
   std::vector<Eigen::Vector2d> result = convexHull(std::move(sample));
 
   const HullFilter filter(result, projection);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (!filter.isInside(points.col(i))) result.push_back(projection(points.col(i)));
+  std::array<Eigen::Index, 1024> outside;
+  constexpr auto BLOCK = static_cast<Eigen::Index>(outside.size());
+  for (Eigen::Index begin = 0; begin < points.cols(); begin += BLOCK) {
+    std::size_t count = 0;
+    for (Eigen::Index i = begin; i < std::min(begin + BLOCK, points.cols()); ++i) {
+      outside[count] = i;
+      count += filter.isInside(points.col(i)) ? 0 : 1;
+    }
+    for (std::size_t n = 0; n < count; ++n) result.push_back(projection(points.col(outside[n])));
+  }
   return result;
 }
 

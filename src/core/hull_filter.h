@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -30,11 +31,12 @@ class HullFilter {
 
   /// True only if the point lies inside of the polygon.
   bool isInside(const Eigen::Vector3f& point) const {
+    // Without branches: points come in any order, and a guess at each would often be wrong.
     const float strip = strip_axis_.dot(point) + strip_offset_;
-    if (!(strip >= 0 && strip < STRIPS)) return false;
     const float height = height_axis_.dot(point) + height_offset_;
-    const auto& [low, high] = inside_[static_cast<std::size_t>(strip)];
-    return height > low && height < high;
+    const float nearest = std::min(std::max(strip, 0.0F), static_cast<float>(STRIPS - 1));
+    const auto& [low, high] = inside_[static_cast<std::size_t>(static_cast<int>(nearest))];
+    return (strip >= 0) & (strip < STRIPS) & (height > low) & (height < high);
   }
 
  private:

@@ -74,7 +74,9 @@ GroundSegmentation<PointT>& GroundSegmentation<PointT>::operator=(const GroundSe
 template <typename PointT>
 void GroundSegmentation<PointT>::segment(pcl::PointIndices& ground, pcl::PointIndices& objects) {
   ground = objects = pcl::PointIndices();
-  if (!initCompute()) return;
+  // Without indices PCLBase would only make a list of all points, which nobody reads.
+  const bool all_points = input_ && !indices_;
+  if (!all_points && !initCompute()) return;
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   const core::Labels labels = computeLabels();
   ground.header = objects.header = input_->header;
@@ -162,12 +164,13 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   const std::vector<std::size_t> positions = points.finitePositions(static_cast<std::size_t>(finite.cols()));
   const core::PointStatistics statistics = core::summarise(finite);
   const std::vector<Eigen::Index> far = core::findFarPoints(finite, statistics);
-  const core::Labels labels =
+  core::Labels labels =
       far.empty() ? labelScan(std::move(finite), statistics) : labelAroundFarPoints(std::move(finite), far);
   for (const Eigen::Index n : far)
     far_points_.push_back(points.index(positions.empty() ? static_cast<std::size_t>(n) : positions[n]));
   if (!far.empty())
-    warn("points too far from all others to belong to the scan, left out as objects: " + std::to_string(far.size()));
+    warn("points too far from all others to belong to the scan, left out as objects: " +
+         std::to_string(far.size()));
   if (labels.size() == points.size()) return labels;
 
   core::Labels scattered(points.size(), core::Label::NEITHER);
