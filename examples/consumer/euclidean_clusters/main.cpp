@@ -9,9 +9,7 @@
 #include <iostream>
 #include <vector>
 
-int
-main()
-{
+int main() {
   const auto scan = makeScene();
 
   pcl_fft_ground::FFTGroundSegmentation<pcl::PointXYZ> segmentation;
@@ -21,7 +19,8 @@ main()
   const auto objects = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   segmentation.filter(*objects);
 
-  // The search tree is given explicitly: for an organised cloud PCL would choose a search that needs a camera's image.
+  // The search tree is given explicitly: for an organised cloud PCL would choose a search that needs a
+  // camera's image.
   pcl::EuclideanClusterExtraction<pcl::PointXYZ> clustering;
   clustering.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
   clustering.setClusterTolerance(0.05);

@@ -8,9 +8,7 @@
 #include <iostream>
 #include <vector>
 
-int
-main()
-{
+int main() {
   const auto scan = makeScene();
 
   pcl_fft_ground::FFTGroundSegmentation<pcl::PointXYZ> segmentation;

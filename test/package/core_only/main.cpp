@@ -4,9 +4,7 @@
 
 #include <iostream>
 
-int
-main()
-{
+int main() {
   pcl_fft_ground::core::Points points(3, 3);
   points.col(0) << 0.0F, 0.0F, 0.0F;
   points.col(1) << 0.1F, 0.0F, 0.0F;
