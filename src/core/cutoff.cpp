@@ -55,6 +55,12 @@ bool isPeak(const Eigen::ArrayXXd& m, Eigen::Index k, Eigen::Index l,
   });
 }
 
+/// True if a neighbour along x exceeds the bin: a quick answer for most bins, those at the border left out.
+bool isBeaten(const Eigen::ArrayXXd& m, Eigen::Index k, Eigen::Index l, double threshold) {
+  const bool may_be_conjugate = k == 0 || 2 * k + 1 >= m.rows();
+  return !may_be_conjugate && !(m(k, l) > std::max(m(k - 1, l), m(k + 1, l)) + threshold);
+}
+
 }  // namespace
 
 std::vector<SpectrumPeak> findSpectrumPeaks(Eigen::ArrayXXd magnitude, const PeakParameters& parameters) {
@@ -67,7 +73,8 @@ std::vector<SpectrumPeak> findSpectrumPeaks(Eigen::ArrayXXd magnitude, const Pea
   std::vector<SpectrumPeak> peaks;
   for (Eigen::Index l = 0; l < cols; ++l)
     for (Eigen::Index k = 0; k <= rows / 2; ++k) {
-      if (!(m(k, l) > 0) || !isPeak(m, k, l, window, parameters.threshold)) continue;
+      if (!(m(k, l) > 0) || isBeaten(m, k, l, parameters.threshold)) continue;
+      if (!isPeak(m, k, l, window, parameters.threshold)) continue;
       const SpectrumPeak peak{k, l, binRadius(k, l, rows, cols), m(k, l)};
       peaks.push_back(peak);
       // The magnitudes are symmetric: the other half of the plane holds the conjugates of the peaks.

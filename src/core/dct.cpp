@@ -1,81 +1,138 @@
 #include "dct.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_fft_ground::core {
+namespace {
+
+/// A length so short is not halved any more: summing it up is faster.
+constexpr Eigen::Index LARGEST_EVEN_BASE = 4;
+
+}  // namespace
 
 Dct::Dct(Eigen::Index length)
     : length_(length),
-      fft_(static_cast<int>(length)),
-      twiddles_(static_cast<std::size_t>(length)),
-      line_(twiddles_.size()),
-      bins_(twiddles_.size()),
-      unused_(twiddles_.size()) {
-  const auto n = static_cast<double>(length);
-  for (std::size_t k = 0; k < twiddles_.size(); ++k)
-    twiddles_[k] = std::polar(std::sqrt((k == 0 ? 1.0 : 2.0) / n), -0.5 * M_PI * static_cast<double>(k) / n);
+      base_(length),
+      scales_(static_cast<std::size_t>(length), std::sqrt(2.0 / static_cast<double>(length))),
+      scratch_(scales_.size()) {
+  scales_.front() = std::sqrt(1.0 / static_cast<double>(length));
+  while (base_ % 2 == 0 && base_ > LARGEST_EVEN_BASE) base_ /= 2;
+  secants_.resize(scales_.size());
+  for (Eigen::Index n = length; n > base_; n /= 2)
+    for (Eigen::Index i = 0; i < n / 2; ++i)
+      secants_[static_cast<std::size_t>(n / 2 + i)] =
+          0.5 / std::cos(M_PI * static_cast<double>(2 * i + 1) / static_cast<double>(2 * n));
+  cosines_.resize(base_, base_);
+  for (Eigen::Index i = 0; i < base_; ++i)
+    for (Eigen::Index k = 0; k < base_; ++k)
+      cosines_(k, i) = std::cos(M_PI * static_cast<double>((2 * i + 1) * k % (4 * base_)) /
+                                static_cast<double>(2 * base_));
 }
 
-void Dct::forward(Eigen::ArrayXXd& lines) {
-  for (Eigen::Index j = 0; j < lines.cols(); j += 2)
-    forwardPair(lines.col(j).data(), j + 1 < lines.cols() ? lines.col(j + 1).data() : unused_.data());
-}
-
-void Dct::inverse(Eigen::ArrayXXd& lines) {
-  for (Eigen::Index j = 0; j < lines.cols(); j += 2)
-    inversePair(lines.col(j).data(), j + 1 < lines.cols() ? lines.col(j + 1).data() : unused_.data());
-}
-
-/// Even samples in order, then odd ones backwards: the DFT of that line, turned by a quarter sample, is the
-/// DCT. One line is the real, the other the imaginary part.
-void Dct::forwardPair(double* first, double* second) {
-  const auto n = static_cast<std::size_t>(length_);
-  for (std::size_t i = 0; 2 * i < n; ++i) line_[i] = {first[2 * i], second[2 * i]};
-  for (std::size_t i = 0; 2 * i + 1 < n; ++i) line_[n - 1 - i] = {first[2 * i + 1], second[2 * i + 1]};
-  fft_.forward(line_.data(), bins_.data());
-  for (std::size_t k = 0; k < n; ++k) {
-    const Complex here = bins_[k], there = bins_[k == 0 ? 0 : n - k], t = twiddles_[k];
-    const double sum_re = 0.5 * (here.real() + there.real()), sum_im = 0.5 * (here.imag() + there.imag());
-    const double gap_re = 0.5 * (here.real() - there.real()), gap_im = 0.5 * (here.imag() - there.imag());
-    first[k] = t.real() * sum_re - t.imag() * gap_im;
-    second[k] = t.real() * sum_im + t.imag() * gap_re;
+/// Sums and scaled differences of mirrored values; the transform of those, halved in length, are the even
+/// coefficients and, two neighbours added, the odd ones.
+void Dct::transform(Lanes* values, Lanes* scratch, Eigen::Index length) const {
+  if (length == base_) {
+    for (Eigen::Index k = 0; k < base_; ++k) {
+      scratch[k] = values[0] * cosines_(k, 0);
+      for (Eigen::Index i = 1; i < base_; ++i) scratch[k] += values[i] * cosines_(k, i);
+    }
+    std::copy(scratch, scratch + base_, values);
+    return;
+  }
+  const Eigen::Index half = length / 2;
+  const double* secants = secants_.data() + half;
+  Lanes* const other = scratch + half;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    const Lanes first = values[i], last = values[length - 1 - i];
+    scratch[i] = first + last;
+    other[i] = (first - last) * secants[i];
+  }
+  transform(scratch, values, half);
+  transform(other, values, half);
+  for (Eigen::Index k = 0; k < half; ++k) {
+    values[2 * k] = scratch[k];
+    values[2 * k + 1] = k + 1 < half ? Lanes(other[k] + other[k + 1]) : other[k];
   }
 }
 
-/// Of a real line the turned bin k is coefficient k - i coefficient (N - k).
-void Dct::inversePair(double* first, double* second) {
-  const auto n = static_cast<std::size_t>(length_);
-  const double scale = static_cast<double>(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t mirrored = k == 0 ? 0 : n - k;
-    const double a = first[k], b = second[k];
-    const double c = k == 0 ? 0 : first[mirrored], d = k == 0 ? 0 : second[mirrored];
-    // |twiddle|^2 is 2 / N (1 / N for k = 0); the plain bin is the coefficient over c_k.
-    const double weight = k == 0 ? scale : 0.5 * scale;
-    const double re = weight * twiddles_[k].real(), im = -weight * twiddles_[k].imag();
-    bins_[k] = {re * (a + d) - im * (b - c), re * (b - c) + im * (a + d)};
+/// The steps of transform() transposed, the last one first.
+void Dct::transposed(Lanes* values, Lanes* scratch, Eigen::Index length) const {
+  if (length == base_) {
+    for (Eigen::Index i = 0; i < base_; ++i) {
+      scratch[i] = values[0];
+      for (Eigen::Index k = 1; k < base_; ++k) scratch[i] += values[k] * cosines_(k, i);
+    }
+    std::copy(scratch, scratch + base_, values);
+    return;
   }
-  fft_.inverse(bins_.data(), line_.data());
-  for (std::size_t i = 0; 2 * i < n; ++i) first[2 * i] = line_[i].real(), second[2 * i] = line_[i].imag();
-  for (std::size_t i = 0; 2 * i + 1 < n; ++i)
-    first[2 * i + 1] = line_[n - 1 - i].real(), second[2 * i + 1] = line_[n - 1 - i].imag();
+  const Eigen::Index half = length / 2;
+  const double* secants = secants_.data() + half;
+  Lanes* const other = scratch + half;
+  for (Eigen::Index k = 0; k < half; ++k) {
+    scratch[k] = values[2 * k];
+    other[k] = k > 0 ? Lanes(values[2 * k + 1] + values[2 * k - 1]) : values[1];
+  }
+  transposed(scratch, values, half);
+  transposed(other, values, half);
+  for (Eigen::Index i = 0; i < half; ++i) {
+    const Lanes base_part = other[i] * secants[i];
+    values[i] = scratch[i] + base_part;
+    values[length - 1 - i] = scratch[i] - base_part;
+  }
+}
+
+void Dct::forward(Lanes* values) {
+  transform(values, scratch_.data(), length_);
+  for (std::size_t k = 0; k < scales_.size(); ++k) values[k] *= scales_[k];
+}
+
+void Dct::inverse(Lanes* values) {
+  for (std::size_t k = 0; k < scales_.size(); ++k) values[k] *= scales_[k];
+  transposed(values, scratch_.data(), length_);
 }
 
 Dct2d::Dct2d(Eigen::Index rows, Eigen::Index cols)
-    : along_rows_(rows), along_cols_(cols), transposed_(cols, rows) {}
+    : along_rows_(rows),
+      along_cols_(cols),
+      lines_(static_cast<std::size_t>(std::max(rows, cols)), Dct::Lanes::Zero()) {}
+
+void Dct2d::eachColumn(Eigen::ArrayXXd& grid, Transform transform) {
+  for (Eigen::Index j = 0; j < grid.cols(); j += Dct::Lanes::SizeAtCompileTime) {
+    const Eigen::Index lanes = std::min<Eigen::Index>(Dct::Lanes::SizeAtCompileTime, grid.cols() - j);
+    Eigen::Map<Eigen::ArrayXXd> lines(lines_.data()->data(), Dct::Lanes::SizeAtCompileTime, grid.rows());
+    lines.topRows(lanes) = grid.middleCols(j, lanes).transpose();
+    (along_rows_.*transform)(lines_.data());
+    grid.middleCols(j, lanes) = lines.topRows(lanes).transpose();
+  }
+}
+
+void Dct2d::eachRow(Eigen::ArrayXXd& grid, Transform transform) {
+  for (Eigen::Index i = 0; i < grid.rows(); i += Dct::Lanes::SizeAtCompileTime) {
+    const Eigen::Index lanes = std::min<Eigen::Index>(Dct::Lanes::SizeAtCompileTime, grid.rows() - i);
+    Eigen::Map<Eigen::ArrayXXd> lines(lines_.data()->data(), Dct::Lanes::SizeAtCompileTime, grid.cols());
+    lines.topRows(lanes) = grid.middleRows(i, lanes);
+    (along_cols_.*transform)(lines_.data());
+    grid.middleRows(i, lanes) = lines.topRows(lanes);
+  }
+}
 
 void Dct2d::forward(Eigen::ArrayXXd& grid) {
-  along_rows_.forward(grid);
-  transposed_ = grid.transpose();
-  along_cols_.forward(transposed_);
-  grid = transposed_.transpose();
+  eachColumn(grid, &Dct::forward);
+  eachRow(grid, &Dct::forward);
 }
 
 void Dct2d::inverse(Eigen::ArrayXXd& coefficients) {
-  transposed_ = coefficients.transpose();
-  along_cols_.inverse(transposed_);
-  coefficients = transposed_.transpose();
-  along_rows_.inverse(coefficients);
+  eachRow(coefficients, &Dct::inverse);
+  eachColumn(coefficients, &Dct::inverse);
+}
+
+Eigen::Index fastDctLength(Eigen::Index length) {
+  constexpr Eigen::Index LARGEST_ODD_FACTOR = 15;
+  Eigen::Index step = 1;
+  while (length > (LARGEST_ODD_FACTOR + 1) * step) step *= 2;
+  return (length + step - 1) / step * step;
 }
 
 }  // namespace pcl_fft_ground::core

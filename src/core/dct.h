@@ -1,41 +1,41 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 #include <vector>
-
-#include "fft.h"
 
 namespace pcl_fft_ground::core {
 
 /** Orthonormal cosine transform (DCT-II) of real lines of one length, and its inverse (DCT-III).
  *
  * Coefficient k of a line x is c_k sum_i x_i cos(pi (2 i + 1) k / (2 N)), c_0 = sqrt(1 / N), c_k = sqrt(2 /
- * N): the line continues evenly beyond its ends, without wrap-around. Two lines at a time go through one
- * complex FFT of their length (Makhoul 1980): O(N log N) for every N. An object holds its scratch space: one
- * per thread.
+ * N): the line continues evenly beyond its ends, without wrap-around. Even lengths are halved again and
+ * again (Lee 1984), the rest m is summed up: O(N (m + log N)). Several lines go through side by side.
+ * An object holds its scratch space: one per thread.
  */
 class Dct {
  public:
+  /// A value of each of the lines that are transformed together.
+  using Lanes = Eigen::Array<double, 8, 1>;
+
   explicit Dct(Eigen::Index length);
 
-  /// Transforms every column of `lines` in place.
-  void forward(Eigen::ArrayXXd& lines);
+  Eigen::Index length() const { return length_; }
+
+  /// Transforms lines in place: `values` are their first values, their second ones and so on.
+  void forward(Lanes* values);
 
   /// Undoes forward().
-  void inverse(Eigen::ArrayXXd& lines);
+  void inverse(Lanes* values);
 
  private:
-  using Complex = std::complex<double>;
+  void transform(Lanes* values, Lanes* scratch, Eigen::Index length) const;
+  void transposed(Lanes* values, Lanes* scratch, Eigen::Index length) const;
 
-  void forwardPair(double* first, double* second);
-  void inversePair(double* first, double* second);
-
-  Eigen::Index length_;
-  Fft fft_;
-  std::vector<Complex> twiddles_;  // c_k exp(-pi i k / (2 N))
-  std::vector<Complex> line_, bins_;
-  std::vector<double> unused_;  // partner of the last line of an odd number
+  Eigen::Index length_, base_;   // base_: what is left of the length after halving
+  std::vector<double> scales_;   // c_k
+  std::vector<double> secants_;  // 1 / (2 cos(pi (2 i + 1) / (2 n))) at n / 2 + i, for every halved n
+  Eigen::ArrayXXd cosines_;      // (k, i) of the base
+  std::vector<Lanes> scratch_;
 };
 
 /// Orthonormal cosine transform of grids of one size, in place.
@@ -50,8 +50,16 @@ class Dct2d {
   void inverse(Eigen::ArrayXXd& coefficients);
 
  private:
+  using Transform = void (Dct::*)(Dct::Lanes*);
+
+  void eachColumn(Eigen::ArrayXXd& grid, Transform transform);
+  void eachRow(Eigen::ArrayXXd& grid, Transform transform);
+
   Dct along_rows_, along_cols_;
-  Eigen::ArrayXXd transposed_;
+  std::vector<Dct::Lanes> lines_;
 };
+
+/// The smallest length from `length` on that is transformed fast: its odd factor is 15 at the most.
+Eigen::Index fastDctLength(Eigen::Index length);
 
 }  // namespace pcl_fft_ground::core

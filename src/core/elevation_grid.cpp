@@ -36,8 +36,8 @@ ElevationGrid rasteriseHighest(const PointsView& points, const GridGeometry& geo
   ElevationGrid grid{geometry, Eigen::ArrayXXd::Constant(geometry.rows, geometry.cols, NOT_OBSERVED), {}};
   const Eigen::Array2d origin = geometry.origin;
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
-    const Eigen::Array2d cell =
-        (points.col(n).head<2>().array().cast<double>() - origin) / geometry.cell_size;
+    const Eigen::Array2d place = points.col(n).head<2>().cast<double>();
+    const Eigen::Array2d cell = (place - origin) / geometry.cell_size;
     double& highest =
         grid.elevation(static_cast<Eigen::Index>(cell.x()), static_cast<Eigen::Index>(cell.y()));
     highest = std::max(highest, static_cast<double>(points(2, n)));
@@ -47,15 +47,12 @@ ElevationGrid rasteriseHighest(const PointsView& points, const GridGeometry& geo
   return grid;
 }
 
-Eigen::ArrayXXd extendedElevation(const ElevationGrid& grid, Eigen::Index rows, Eigen::Index cols) {
-  const Eigen::Index own_rows = grid.elevation.rows(), own_cols = grid.elevation.cols();
-  if (rows == own_rows && cols == own_cols) return grid.elevation;
-  Eigen::ArrayXXd elevation(rows, cols);
-  elevation.topLeftCorner(own_rows, own_cols) = grid.elevation;
-  Mask observed = Mask::Constant(rows, cols, false);
-  observed.topLeftCorner(own_rows, own_cols) = grid.observed;
-  fillEmptyCells(elevation, observed);
-  return elevation;
+ElevationGrid lowerCorner(ElevationGrid grid, Eigen::Index rows, Eigen::Index cols) {
+  grid.geometry.rows = rows;
+  grid.geometry.cols = cols;
+  grid.elevation.conservativeResize(rows, cols);
+  grid.observed.conservativeResize(rows, cols);
+  return grid;
 }
 
 }  // namespace pcl_fft_ground::core

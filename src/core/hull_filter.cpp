@@ -40,7 +40,7 @@ HullFilter::HullFilter(const std::vector<Eigen::Vector2d>& hull, const Horizonta
   const double strips_per_metre = STRIPS / width;
   strip_axis_ = (projection.axes.row(0) * strips_per_metre).cast<float>();
   strip_offset_ =
-      static_cast<float>(-(projection.axes.row(0).dot(projection.centre) + left->x()) * strips_per_metre);
+      static_cast<float>(1 - (projection.axes.row(0).dot(projection.centre) + left->x()) * strips_per_metre);
   height_axis_ = projection.axes.row(1).cast<float>();
   height_offset_ = static_cast<float>(-projection.axes.row(1).dot(projection.centre));
 
@@ -51,30 +51,46 @@ HullFilter::HullFilter(const std::vector<Eigen::Vector2d>& hull, const Horizonta
   for (int strip = 0; strip < STRIPS; ++strip) {
     // The polygon is convex: what is inside at both ends of the strip is inside all over it.
     const auto a = insideAt(strip, -margin), b = insideAt(strip + 1, margin);
-    inside_[static_cast<std::size_t>(strip)] = {static_cast<float>(std::max(a.first, b.first) + margin),
-                                                static_cast<float>(std::min(a.second, b.second) - margin)};
+    inside_[static_cast<std::size_t>(strip + 1)] = {
+        static_cast<float>(std::max(a.first, b.first) + margin),
+        static_cast<float>(std::min(a.second, b.second) - margin)};
   }
+}
+
+std::vector<Eigen::Index> HullFilter::outside(const PointsView& points) const {
+  constexpr Eigen::Index BLOCK = 512;
+  std::array<float, BLOCK> strips, heights;
+  const Eigen::Vector3f s = strip_axis_, h = height_axis_;
+  const float s_offset = strip_offset_, h_offset = height_offset_;
+  std::vector<Eigen::Index> result;
+  for (Eigen::Index begin = 0; begin < points.cols(); begin += BLOCK) {
+    const auto count = static_cast<std::size_t>(std::min(BLOCK, points.cols() - begin));
+    const float* p = points.data() + 3 * begin;
+    for (std::size_t n = 0; n < count; ++n, p += 3) {
+      const float strip = s[0] * p[0] + s[1] * p[1] + (s[2] * p[2] + s_offset);
+      strips[n] = std::min(std::max(strip, 0.0F), static_cast<float>(STRIPS + 1));
+      heights[n] = h[0] * p[0] + h[1] * p[1] + (h[2] * p[2] + h_offset);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto& [low, high] = inside_[static_cast<std::size_t>(static_cast<int>(strips[n]))];
+      if (!(heights[n] > low && heights[n] < high)) result.push_back(begin + static_cast<Eigen::Index>(n));
+    }
+  }
+  return result;
 }
 
 std::vector<Eigen::Vector2d> outermostPoints(const PointsView& points,
                                              const HorizontalProjection& projection) {
-  constexpr Eigen::Index SAMPLE = 4096;
-  const Eigen::Index step = std::max<Eigen::Index>(1, points.cols() / SAMPLE);
-  std::vector<Eigen::Vector2d> sample;
-  for (Eigen::Index i = 0; i < points.cols(); i += step) sample.push_back(projection(points.col(i)));
-  std::vector<Eigen::Vector2d> result = convexHull(std::move(sample));
-
-  const HullFilter filter(result, projection);
-  std::array<Eigen::Index, 1024> outside;
-  constexpr auto BLOCK = static_cast<Eigen::Index>(outside.size());
-  for (Eigen::Index begin = 0; begin < points.cols(); begin += BLOCK) {
-    std::size_t count = 0;
-    for (Eigen::Index i = begin; i < std::min(begin + BLOCK, points.cols()); ++i) {
-      outside[count] = i;
-      count += filter.isInside(points.col(i)) ? 0 : 1;
-    }
-    for (std::size_t n = 0; n < count; ++n) result.push_back(projection(points.col(outside[n])));
+  constexpr Eigen::Index ONE_IN = 64, FEW = 256;
+  std::vector<Eigen::Vector2d> result;
+  if (points.cols() <= FEW) {
+    for (Eigen::Index n = 0; n < points.cols(); ++n) result.push_back(projection(points.col(n)));
+    return result;
   }
+  const Points sample = points(Eigen::all, Eigen::seqN(0, points.cols() / ONE_IN, ONE_IN));
+  result = convexHull(outermostPoints(sample, projection));
+  for (const Eigen::Index n : HullFilter(result, projection).outside(points))
+    result.push_back(projection(points.col(n)));
   return result;
 }
 

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "pcl_fft_ground/core/elevation_grid.h"
-#include "pcl_fft_ground/core/points.h"
 #include "pcl_fft_ground/core/robust_ground.h"
 #include "robust_grid.h"
+#include "robust_points.h"
+#include "robust_scale.h"
 
 namespace pcl_fft_ground::core {
 
@@ -17,7 +18,7 @@ struct CellPoints {
 };
 
 /** A point for each cell by the statistic. The result does not depend on the order of the points. */
-CellPoints representativePoints(const PointsView& points, const GridGeometry& cells, CellStatistic statistic);
+CellPoints representativePoints(const SortedPoints& points, CellStatistic statistic);
 
 /// A surface and the band around it in which points are ground.
 struct GroundBand {
@@ -27,7 +28,10 @@ struct GroundBand {
 };
 
 /// The mean of those points of each cell that lie in the band.
-CellPoints meanGroundPoints(const PointsView& points, const GridGeometry& cells, const GroundBand& band);
+CellPoints meanGroundPoints(const SortedPoints& points, const GroundBand& band);
+
+/// How the points in the band lie around the surface; told from about 40,000 of all points.
+Spread spreadAround(const SortedPoints& points, const GroundBand& band);
 
 /// The heights as a grid, empty cells filled from the nearest observed one.
 ElevationGrid elevationOf(const CellPoints& points, const GridGeometry& cells);

@@ -20,42 +20,41 @@ Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Inde
 PenalisedFit::PenalisedFit(Eigen::Index rows, Eigen::Index cols, double cell_size, const BandLimit& limit)
     : transform_(rows, cols),
       penalty_(penaltyOf(limit, rows, cols, cell_size)),
+      surface_(Eigen::ArrayXXd::Zero(rows, cols)),
+      coefficients_(surface_),
       residual_(rows, cols),
-      preconditioned_(rows, cols),
+      preconditioner_(rows, cols),
       direction_(rows, cols),
+      step_(rows, cols),
       image_(rows, cols) {}
 
-void PenalisedFit::precondition(double mean_weight) {
-  preconditioned_ = residual_;
-  transform_.forward(preconditioned_);
-  preconditioned_ /= mean_weight + penalty_;
-  transform_.inverse(preconditioned_);
+void PenalisedFit::startFrom(const Eigen::ArrayXXd& surface) {
+  surface_ = surface;
+  coefficients_ = surface;
+  transform_.forward(coefficients_);
 }
 
-void PenalisedFit::solve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd& weighted_heights,
-                         const Effort& effort, Eigen::ArrayXXd& surface) {
-  const auto apply = [&](const Eigen::ArrayXXd& in) {  // (W + C' P C) in
-    image_ = in;
+void PenalisedFit::improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd& weighted_residuals,
+                           const Effort& effort) {
+  residual_ = weighted_residuals;
+  transform_.forward(residual_);
+  residual_ -= penalty_ * coefficients_;
+  preconditioner_ = 1 / (std::max(weights.mean(), 0.05) + penalty_);
+  direction_ = preconditioner_ * residual_;
+  double product = (residual_ * direction_).sum();
+  for (int n = 0; n < effort.steps && product > 0; ++n) {
+    step_ = direction_;
+    transform_.inverse(step_);
+    image_ = weights * step_;
     transform_.forward(image_);
-    image_ *= penalty_;
-    transform_.inverse(image_);
-    image_ += weights * in;
-  };
-  const double mean_weight = std::max(weights.mean(), 0.05);
-  apply(surface);
-  residual_ = weighted_heights - image_;
-  precondition(mean_weight);
-  direction_ = preconditioned_;
-  double product = (residual_ * preconditioned_).sum();
-  for (int i = 0; i < effort.iterations && product > 0; ++i) {
-    apply(direction_);
-    const double step = product / (direction_ * image_).sum();
-    surface += step * direction_;
-    if (step * direction_.abs().maxCoeff() < effort.precision) break;
-    residual_ -= step * image_;
-    precondition(mean_weight);
-    const double next = (residual_ * preconditioned_).sum();
-    direction_ = preconditioned_ + next / product * direction_;
+    image_ += penalty_ * direction_;
+    const double length = product / (direction_ * image_).sum();
+    coefficients_ += length * direction_;
+    surface_ += length * step_;
+    if (length * step_.abs().maxCoeff() < effort.precision) break;
+    residual_ -= length * image_;
+    const double next = (preconditioner_ * residual_.square()).sum();
+    direction_ = preconditioner_ * residual_ + next / product * direction_;
     product = next;
   }
 }

@@ -23,35 +23,40 @@ Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Inde
  *     sum_i w_i (y_i - s_i)^2 + sum_k P_k |s^_k|^2,    s^ the cosine transform of s.
  *
  * With all weights 1 this is the Butterworth power response, s^_k = y^_k / (1 + P_k). Otherwise it is solved
- * by conjugate gradients, preconditioned with 1 / (mean weight + P_k). An object serves one grid and one
- * penalty and allocates nothing after its construction.
+ * for s^ by conjugate gradients, preconditioned with 1 / (mean weight + P_k): two transforms a step. An
+ * object serves one grid and one penalty and allocates nothing after its construction.
  */
 class PenalisedFit {
  public:
   PenalisedFit(Eigen::Index rows, Eigen::Index cols, double cell_size, const BandLimit& limit);
 
-  /// When solve() is done: a step below `precision` [m] anywhere, or so many steps.
+  /// When improve() is done: a step below `precision` [m] anywhere, or so many steps.
   struct Effort {
-    int iterations = 30;
+    int steps = 30;
     double precision = 1e-4;
   };
 
-  /** \param weights w, >= 0, not all 0
-   * \param weighted_heights w y [m]
-   * \param surface where to start; holds the fit afterwards [m]
+  /// Takes a surface [m] to go on from; until then it is 0.
+  void startFrom(const Eigen::ArrayXXd& surface);
+
+  /** Goes from the present surface towards the fit.
+   * \param weights w, >= 0, not all 0
+   * \param weighted_residuals w (y - s) of the present surface s [m]
    */
-  void solve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd& weighted_heights, const Effort& effort,
-             Eigen::ArrayXXd& surface);
+  void improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd& weighted_residuals,
+               const Effort& effort);
+
+  /// The present surface [m].
+  const Eigen::ArrayXXd& surface() const { return surface_; }
 
   /// The fit for weights of 1 everywhere, in place.
   void lowPass(Eigen::ArrayXXd& heights);
 
  private:
-  void precondition(double mean_weight);
-
   Dct2d transform_;
-  Eigen::ArrayXXd penalty_;
-  Eigen::ArrayXXd residual_, preconditioned_, direction_, image_;
+  Eigen::ArrayXXd penalty_, surface_;
+  Eigen::ArrayXXd coefficients_, residual_, preconditioner_, direction_;  // cosine transforms
+  Eigen::ArrayXXd step_, image_;
 };
 
 }  // namespace pcl_fft_ground::core

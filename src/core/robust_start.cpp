@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace pcl_fft_ground::core {
@@ -16,9 +17,9 @@ std::size_t blockOf(const Eigen::Vector3d& p, const GridGeometry& grid) {
   return static_cast<std::size_t>(i + j * grid.rows);
 }
 
-std::vector<Heights> heightsOfBlocks(const CellPoints& points, const GridGeometry& grid) {
+std::vector<Heights> heightsOfBlocks(const std::vector<Eigen::Vector3d>& points, const GridGeometry& grid) {
   std::vector<Heights> blocks(static_cast<std::size_t>(grid.rows * grid.cols));
-  for (const Eigen::Vector3d& p : points.positions) blocks[blockOf(p, grid)].push_back(p.z());
+  for (const Eigen::Vector3d& p : points) blocks[blockOf(p, grid)].push_back(p.z());
   return blocks;
 }
 
@@ -72,7 +73,8 @@ ElevationGrid emptyGrid(const GridGeometry& grid) {
   return {grid, Eigen::ArrayXXd::Zero(grid.rows, grid.cols), Mask::Constant(grid.rows, grid.cols, false)};
 }
 
-ElevationGrid lowestLevels(const CellPoints& points, const GridGeometry& grid, double window) {
+ElevationGrid lowestLevels(const std::vector<Eigen::Vector3d>& points, const GridGeometry& grid,
+                           double window) {
   std::vector<Heights> heights = heightsOfBlocks(points, grid);
   ElevationGrid blocks = emptyGrid(grid);
   const double fewest = fewestAgreeing(heights);
@@ -86,13 +88,13 @@ ElevationGrid lowestLevels(const CellPoints& points, const GridGeometry& grid, d
 
 }  // namespace
 
-Eigen::ArrayXXd lowerEnvelope(const CellPoints& points, const GridGeometry& grid, const BandLimit& limit) {
+Eigen::ArrayXXd lowerEnvelope(const std::vector<Eigen::Vector3d>& points, const GridGeometry& grid,
+                              double wavelength, PenalisedFit& fit) {
   constexpr int ITERATIONS = 20;
-  ElevationGrid blocks = lowestLevels(points, grid, limit.wavelength / 8);
-  if (!blocks.observed.any()) return blockMeans(points, std::vector<bool>(points.cells.size(), true), grid);
-  dropContradicted(blocks, limit.wavelength / 2);
+  ElevationGrid blocks = lowestLevels(points, grid, wavelength / 8);
+  if (!blocks.observed.any()) blocks = lowestLevels(points, grid, std::numeric_limits<double>::infinity());
+  dropContradicted(blocks, wavelength / 2);
   fillEmptyCells(blocks.elevation, blocks.observed);
-  PenalisedFit fit(grid.rows, grid.cols, grid.cell_size, limit);
   Eigen::ArrayXXd surface;
   for (int n = 0; n < ITERATIONS; ++n) {
     surface = blocks.elevation;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "robust_cells.h"
@@ -18,7 +20,7 @@ struct ScaleFloors {
  *
  * Up to three scales above the ground's median residual a point is ground; far below it is an outlier. The
  * scale is the spread of the current ground's residuals, so that the ground grows outwards from what is found
- * first until it meets a step.
+ * first until it meets a step. A coarse scale looks at some of the points only.
  */
 class RobustSurface {
  public:
@@ -33,36 +35,38 @@ class RobustSurface {
   void startFrom(const std::vector<bool>& ground, double wavelength);
 
   /// Fits the surface at this wavelength, objects of the last scale staying masked.
-  void refine(double wavelength, int iterations);
+  void refine(double wavelength);
 
   /// Fits the surface to other points at the present wavelength, all of them ground.
   void fitTo(const CellPoints& points);
 
   const BilinearGrid& grid() const { return grid_; }
-  const Eigen::ArrayXXd& heights() const { return surface_; }
+  const Eigen::ArrayXXd& heights() const { return fit_->surface(); }
   const CellPoints& points() const { return points_; }
-  const std::vector<double>& weights() const { return weights_; }
   Spread spread() const { return spread_; }
 
  private:
-  void changeGrid(double wavelength);
+  void changeScale(double wavelength);
+  void takeSamples(double per_cell);
   void findFootings();
   void findResiduals();
-  void estimateSpread(double floor);
+  void estimateSpread(double least, double most);
   double updateWeights();
-  void solve(PenalisedFit& fit);
-  BandLimit limitAt(double wavelength) const { return {wavelength, filter_.order, filter_.passband_ripple}; }
+  void fit(int steps);
 
   CellPoints points_;
   GridGeometry cells_;
   BandLimit filter_;
   ScaleFloors floors_;
   double precision_;
-  double wavelength_ = 0;
+
   BilinearGrid grid_;
-  Eigen::ArrayXXd surface_, cell_weights_, weighted_heights_;
+  std::optional<PenalisedFit> fit_;
+  std::vector<Eigen::Vector3d> samples_;  // the points that the present scale looks at
   std::vector<Footing> footings_;
   std::vector<double> residuals_, weights_, ground_residuals_;
+  Eigen::Array2Xd sums_;  // per cell of the scale's grid: of the weights, of the weighted residuals
+  Eigen::ArrayXXd cell_weights_, cell_residuals_;
   Spread spread_;
 };
 

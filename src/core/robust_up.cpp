@@ -2,11 +2,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "pcl_fft_ground/core/point_statistics.h"
+#include "robust_sample.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -16,29 +15,6 @@ struct Sheet {
   Eigen::Vector3d normal;
   double thickness = 0, breadth = 0;  ///< [m^2]
 };
-
-std::uint32_t hashOf(const float* coordinates) {
-  std::uint32_t hash = 2166136261U;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, coordinates + axis, sizeof bits);
-    hash = (hash ^ bits) * 0x85ebca6bU;
-    hash ^= hash >> 15;
-  }
-  hash *= 0x2c1b3c6dU;
-  return hash ^ (hash >> 13);
-}
-
-/// About as many points as are enough, whatever their order.
-Points sampleOf(const PointsView& points) {
-  constexpr Eigen::Index ENOUGH = 20000;
-  if (points.cols() <= 2 * ENOUGH) return points;
-  const auto one_in = static_cast<std::uint32_t>(points.cols() / ENOUGH);
-  std::vector<Eigen::Index> chosen;
-  for (Eigen::Index n = 0; n < points.cols(); ++n)
-    if (hashOf(points.data() + 3 * n) % one_in == 0) chosen.push_back(n);
-  return points(Eigen::all, chosen);
-}
 
 Sheet principalSheet(const PointsView& points, const Eigen::Vector3d& given) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(summarise(points).covariance);
@@ -86,7 +62,8 @@ bool isTrusted(const Sheet& sheet, const Eigen::Vector3d& given) {
 std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointsView& points, const Eigen::Vector3d& given) {
   constexpr Eigen::Index FEWEST_POINTS = 8;
   if (points.cols() < FEWEST_POINTS) return std::nullopt;
-  const Points sample = sampleOf(points);
+  constexpr Eigen::Index ENOUGH = 10000;
+  const Points sample = sampleOf(points, ENOUGH);
   if (sample.cols() < FEWEST_POINTS) return std::nullopt;
   std::optional<Sheet> best;
   for (const Eigen::Vector3d& start : {given, principalSheet(sample, given).normal}) {

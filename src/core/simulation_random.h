@@ -18,7 +18,9 @@ enum class RandomStream : std::uint32_t {
   RAYS,
   SELECTION,
   NOISE,
-  OUTLIERS
+  OUTLIERS,
+  ROUTE,
+  NAVIGATION
 };
 
 /** \brief Random numbers that repeat across compilers: Boost's distributions, never the standard library's.

@@ -41,7 +41,7 @@ class DctOfSize : public testing::TestWithParam<Size> {
 INSTANTIATE_TEST_SUITE_P(Sizes, DctOfSize,
                          testing::Values(Size(1, 1), Size(1, 2), Size(2, 1), Size(2, 2), Size(1, 9),
                                          Size(16, 16), Size(15, 15), Size(16, 15), Size(24, 7), Size(37, 41),
-                                         Size(20, 97)));
+                                         Size(20, 97), Size(160, 9), Size(12, 176)));
 
 TEST_P(DctOfSize, AgreesWithTheDefinition) {
   const Eigen::ArrayXXd grid = randomGrid(rows_, cols_, random_);
@@ -68,6 +68,27 @@ TEST(Dct, HalfWaveIsOneCoefficient) {
   EXPECT_NEAR(grid(K, 0), std::sqrt(static_cast<double>(N)), 1e-12);
   grid(K, 0) = 0;
   EXPECT_LE(grid.abs().maxCoeff(), 1e-12);
+}
+
+TEST(Dct, KeepsItsPrecisionInLongLines) {
+  std::mt19937 random(2);
+  const Eigen::ArrayXXd grid = randomGrid(4096, 2, random);
+  Dct2d transform(4096, 2);
+  Eigen::ArrayXXd work = grid;
+  transform.forward(work);
+  transform.inverse(work);
+  EXPECT_LE((work - grid).abs().maxCoeff(), 1e-11);
+}
+
+TEST(FastDctLength, IsTheNextWithASmallOddFactor) {
+  for (const Eigen::Index length : {1, 2, 15, 16, 17, 31, 33, 129, 1000, 4097}) {
+    SCOPED_TRACE(length);
+    Eigen::Index odd = fastDctLength(length);
+    EXPECT_GE(odd, length);
+    EXPECT_LE(8 * odd, 9 * length + 8);
+    while (odd % 2 == 0) odd /= 2;
+    EXPECT_LE(odd, 15);
+  }
 }
 
 }  // namespace

@@ -138,34 +138,30 @@ TEST_P(ElevationGridOfSeed, DoesNotDependOnTheOrderOfThePoints) {
 TEST_P(ElevationGridOfSeed, IsContinuedFromItsNearestObservedCells) {
   SCOPED_TRACE(testing::Message() << "seed " << GetParam());
   std::mt19937 random(GetParam());
-  const ElevationGrid grid = gridOf(test::randomBox(60, {0, 0, 0}, {7, 11, 1}, random), 1);
-  const Eigen::Index rows = grid.elevation.rows(), cols = grid.elevation.cols();
-  const Eigen::ArrayXXd extended = extendedElevation(grid, rows + 3, cols + 5);
-  ASSERT_EQ(extended.rows(), rows + 3);
-  ASSERT_EQ(extended.cols(), cols + 5);
-  EXPECT_TRUE((extended.topLeftCorner(rows, cols) == grid.elevation).all());
+  const Points points = test::randomBox(60, {0, 0, 0}, {7, 11, 1}, random);
+  const ElevationGrid grid = gridOf(points, 1);
+  GridGeometry longer = grid.geometry;
+  longer.rows += 3;
+  longer.cols += 5;
+  const ElevationGrid continued = rasteriseHighest(points, longer);
+  ASSERT_EQ(continued.elevation.rows(), longer.rows);
+  ASSERT_EQ(continued.elevation.cols(), longer.cols);
 
-  // The same from a grid of the full size in which the new cells are empty.
-  Eigen::ArrayXXd expected = Eigen::ArrayXXd::Zero(rows + 3, cols + 5);
-  Mask observed = Mask::Constant(rows + 3, cols + 5, false);
-  expected.topLeftCorner(rows, cols) = grid.elevation;
-  observed.topLeftCorner(rows, cols) = grid.observed;
+  // The same from a filled grid to which empty cells are added.
+  Eigen::ArrayXXd expected = Eigen::ArrayXXd::Zero(longer.rows, longer.cols);
+  Mask observed = Mask::Constant(longer.rows, longer.cols, false);
+  expected.topLeftCorner(grid.geometry.rows, grid.geometry.cols) = grid.elevation;
+  observed.topLeftCorner(grid.geometry.rows, grid.geometry.cols) = grid.observed;
   fillEmptyCells(expected, observed);
-  EXPECT_TRUE((extended == expected).all());
-  EXPECT_TRUE((extendedElevation(grid, rows, cols) == grid.elevation).all());
-}
+  EXPECT_TRUE((continued.elevation == expected).all());
 
-TEST(ExtendedElevation, RepeatsTheBorderOfAFullGrid) {
-  ElevationGrid grid;
-  grid.elevation.resize(2, 2);
-  grid.elevation << 1, 2,  //
-      3, 4;
-  grid.observed = Mask::Constant(2, 2, true);
-  Eigen::ArrayXXd expected(3, 4);
-  expected << 1, 2, 2, 2,  //
-      3, 4, 4, 4,          //
-      3, 4, 4, 4;
-  EXPECT_TRUE((extendedElevation(grid, 3, 4) == expected).all());
+  const ElevationGrid corner = lowerCorner(continued, grid.geometry.rows, grid.geometry.cols);
+  EXPECT_EQ(corner.geometry.origin, grid.geometry.origin);
+  EXPECT_EQ(corner.geometry.cell_size, grid.geometry.cell_size);
+  EXPECT_EQ(corner.geometry.rows, grid.geometry.rows);
+  EXPECT_EQ(corner.geometry.cols, grid.geometry.cols);
+  EXPECT_TRUE((corner.elevation == grid.elevation).all());
+  EXPECT_TRUE((corner.observed == grid.observed).all());
 }
 
 }  // namespace

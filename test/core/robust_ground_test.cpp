@@ -59,9 +59,8 @@ TEST(PenalisedFit, WithEqualWeightsIsTheButterworthPowerResponse) {
   transform.inverse(expected);
 
   PenalisedFit fit(ROWS, COLS, cell_size, {wavelength, 2, 3.0});
-  Eigen::ArrayXXd surface = Eigen::ArrayXXd::Zero(ROWS, COLS);
-  fit.solve(Eigen::ArrayXXd::Ones(ROWS, COLS), heights, {30, 0}, surface);
-  EXPECT_LE((surface - expected).abs().maxCoeff(), 1e-10);
+  fit.improve(Eigen::ArrayXXd::Ones(ROWS, COLS), heights, {30, 0});
+  EXPECT_LE((fit.surface() - expected).abs().maxCoeff(), 1e-10);
   Eigen::ArrayXXd filtered = heights;
   fit.lowPass(filtered);
   EXPECT_LE((filtered - expected).abs().maxCoeff(), 1e-12);
@@ -74,9 +73,11 @@ TEST(PenalisedFit, SolvesTheNormalEquations) {
   const Eigen::ArrayXXd heights = randomGrid(ROWS, COLS, random);
   const Eigen::ArrayXXd weights = (randomGrid(ROWS, COLS, random) > 0).cast<double>();
   PenalisedFit fit(ROWS, COLS, 0.05, limit);
-  Eigen::ArrayXXd surface = Eigen::ArrayXXd::Zero(ROWS, COLS);
-  fit.solve(weights, weights * heights, {500, 0}, surface);
+  const Eigen::ArrayXXd start = randomGrid(ROWS, COLS, random);
+  fit.startFrom(start);
+  fit.improve(weights, weights * (heights - start), {500, 0});
 
+  const Eigen::ArrayXXd surface = fit.surface();
   Eigen::ArrayXXd bending = surface;
   Dct2d transform(ROWS, COLS);
   transform.forward(bending);
@@ -92,6 +93,17 @@ struct World {
 
 void PrintTo(const World& world, std::ostream* stream) {
   *stream << world.name;
+}
+
+TEST(PenalisedFit, GoesOnFromWhereItStopped) {
+  std::mt19937 random(12);
+  constexpr Eigen::Index ROWS = 20, COLS = 16;
+  const Eigen::ArrayXXd heights = randomGrid(ROWS, COLS, random);
+  const Eigen::ArrayXXd weights = (randomGrid(ROWS, COLS, random) > 0).cast<double>();
+  PenalisedFit at_once(ROWS, COLS, 0.05, {0.3, 2, 3.0}), in_parts = at_once;
+  at_once.improve(weights, weights * heights, {500, 0});
+  for (int n = 0; n < 100; ++n) in_parts.improve(weights, weights * (heights - in_parts.surface()), {3, 0});
+  EXPECT_LE((at_once.surface() - in_parts.surface()).abs().maxCoeff(), 1e-6);
 }
 
 class BareGround : public testing::TestWithParam<World> {};
@@ -174,6 +186,22 @@ TEST(RobustGround, KeepsTheEdgeOfATerraceWithAMaximumSlope) {
   const std::size_t kept = objectsIn(labelRobust(points, groundOf(points, parameters)).labels);
   EXPECT_LT(kept, 1200U);
   EXPECT_GT(objectsIn(labelRobust(points, groundOf(points, largestObject(40))).labels), 4 * kept);
+}
+
+TEST(RobustGround, DoesNotClimbOnCrowdedObjects) {
+  std::mt19937 random(11);
+  std::vector<bool> is_object;
+  const auto height = [&](double x, double y) {  // flat stones on three quarters of the ground
+    const double u = x / 0.5 - std::floor(x / 0.5), v = y / 0.5 - std::floor(y / 0.5);
+    is_object.push_back(std::max(std::abs(u - 0.5), std::abs(v - 0.5)) < 0.43);
+    return (is_object.back() ? 0.1 : 0.0) + noise(random);
+  };
+  const Points points = scatteredOn(150000, 4, 4, height, random);
+  const Labels labels = labelRobust(points, groundOf(points, largestObject(1))).labels;
+  std::size_t wrong = 0;
+  for (std::size_t n = 0; n < labels.size(); ++n)
+    if ((labels[n] == Label::OBJECT) != is_object[n]) ++wrong;
+  EXPECT_LT(wrong, labels.size() / 100);
 }
 
 TEST(RobustGround, CountsDeepOutliersApart) {

@@ -38,9 +38,10 @@ PCL_FFT_GROUND_CORE_EXPORT std::vector<SpectrumPeak> findSpectrumPeaks(Eigen::Ar
 
 /// Where a cut-off frequency comes from.
 enum class CutoffSource {
-  PEAK,      ///< a peak of the spectrum
-  FALLBACK,  ///< the largest object alone, as no peak qualified
-  GIVEN,     ///< the user
+  PEAK,               ///< a peak of the spectrum
+  FALLBACK,           ///< the largest object alone, as no peak qualified
+  GIVEN,              ///< the user
+  FINEST_WAVELENGTH,  ///< the shortest wavelength of a fitted ground
 };
 
 /// A cut-off frequency and how it came about.

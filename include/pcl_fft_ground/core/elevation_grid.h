@@ -56,10 +56,8 @@ PCL_FFT_GROUND_CORE_EXPORT ElevationGrid rasteriseHighest(const PointsView& poin
  */
 PCL_FFT_GROUND_CORE_EXPORT void fillEmptyCells(Eigen::ArrayXXd& values, const Mask& observed);
 
-/** The grid continued beyond its upper edges to `rows` x `cols` cells; the new cells count as empty and are
- * filled. \param grid a filled grid; `rows` and `cols` are no smaller than its own
- */
-PCL_FFT_GROUND_CORE_EXPORT Eigen::ArrayXXd extendedElevation(const ElevationGrid& grid, Eigen::Index rows,
-                                                             Eigen::Index cols);
+/// The first `rows` x `cols` cells of a grid, which has no fewer; a grid that is moved in is not copied.
+PCL_FFT_GROUND_CORE_EXPORT ElevationGrid lowerCorner(ElevationGrid grid, Eigen::Index rows,
+                                                     Eigen::Index cols);
 
 }  // namespace pcl_fft_ground::core

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "pcl_fft_ground/core/export.h"
+
+namespace pcl_fft_ground::core {
+
+/** Least-squares turn about the vertical and shift that bring points on to their partners, in closed form. */
+class YawFit {
+ public:
+  /// \param weight >= 0
+  void add(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
+    weight_ += weight;
+    from_ += weight * from;
+    to_ += weight * to;
+    dot_ += weight * from.head<2>().dot(to.head<2>());
+    cross_ += weight * (from.x() * to.y() - from.y() * to.x());
+  }
+
+  /// to_from; the identity if nothing of weight was added. Give points near the origin: the sums are plain.
+  PCL_FFT_GROUND_CORE_EXPORT Eigen::Isometry3d solve() const;
+
+ private:
+  double weight_ = 0;
+  double dot_ = 0;
+  double cross_ = 0;
+  Eigen::Vector3d from_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d to_ = Eigen::Vector3d::Zero();
+};
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// The motion v: first turned by the rotation vector v.tail(3) about `centre`, then shifted by v.head(3).
+PCL_FFT_GROUND_CORE_EXPORT Eigen::Isometry3d motionAbout(const Eigen::Vector3d& centre, const Vector6d& v);
+
+/** One Gauss-Newton step of a rigid motion in all six degrees of freedom: point-to-plane and point-to-point.
+ *
+ * Unknown is the motion of motionAbout() about a centre near the points, which keeps it well conditioned.
+ */
+class MotionFit {
+ public:
+  explicit MotionFit(const Eigen::Vector3d& centre) : centre_(centre) {}
+
+  /// Distance of `from` to the plane through `to` with a unit `normal`. \param weight >= 0
+  PCL_FFT_GROUND_CORE_EXPORT void addToPlane(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                             const Eigen::Vector3d& normal, double weight);
+  /// Distance of `from` to `to`. \param weight >= 0
+  PCL_FFT_GROUND_CORE_EXPORT void addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                             double weight);
+
+  /// Motion that lowers the weighted sum of squares most; directions that nothing holds do not move.
+  PCL_FFT_GROUND_CORE_EXPORT Eigen::Isometry3d solve() const;
+
+  /// Sum of weight times squared gradient, in the order (shift, rotation) about the centre.
+  const Matrix6d& information() const { return information_; }
+
+ private:
+  Eigen::Vector3d centre_;
+  Matrix6d information_ = Matrix6d::Zero();
+  Vector6d gradient_ = Vector6d::Zero();
+};
+
+/** Covariance for motions about the origin of what was found for motions about `centre`. */
+PCL_FFT_GROUND_CORE_EXPORT Matrix6d covarianceAboutOrigin(const Matrix6d& about_centre,
+                                                          const Eigen::Vector3d& centre);
+
+/// Turn about the vertical [rad], in (-pi, pi], of a rotation that is nearly one.
+PCL_FFT_GROUND_CORE_EXPORT double yawOf(const Eigen::Isometry3d& transform);
+
+/// Angle [rad] by which a rotation tilts the vertical.
+PCL_FFT_GROUND_CORE_EXPORT double tiltOf(const Eigen::Isometry3d& transform);
+
+}  // namespace pcl_fft_ground::core
