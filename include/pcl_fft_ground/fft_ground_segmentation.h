@@ -1,15 +1,27 @@
 #pragma once
 
+#include <variant>
+
 #include "pcl_fft_ground/core/low_pass_ground.h"
+#include "pcl_fft_ground/core/robust_ground.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 
 namespace pcl_fft_ground {
 
+using core::CellStatistic;
+
+/// How the band-limited ground is found.
+enum class Estimator {
+  LOW_PASS,  ///< as published: a Butterworth low-pass of the highest points (core::estimateLowPassGround())
+  ROBUST,    ///< fitted to the ground cells only, coarse to fine (core::estimateRobustGround())
+};
+
 /** Ground segmentation in the frequency domain, after Douillard et al. (2012), Sec. IV.
  *
- * The elevation map of the scan is low-passed; what stays is the ground, and points above it are objects. The
- * cut-off frequency is the peak of the spectrum closest to DC that keeps objects up to the largest object
- * size out of the ground. That size is all a user has to set, as a share of the scan's extent or in metres.
+ * The ground is the part of the elevation map with long wavelengths; points above it are objects. The size of
+ * the largest object is all a user has to set, as a share of the scan's extent or in metres. The estimator
+ * ROBUST, the default, chooses what else it needs from the data, and getChoices() gives the reasons; LOW_PASS
+ * is the published method with its parameters.
  *
  * \code
  * pcl_fft_ground::FFTGroundSegmentation<pcl::PointXYZ> filter;
@@ -27,9 +39,14 @@ class FFTGroundSegmentation : public GroundSegmentation<PointT> {
   /// \param extract_removed_indices whether getRemovedIndices() is filled
   explicit FFTGroundSegmentation(bool extract_removed_indices = false);
 
-  /// Side of an elevation cell [m], above 0. Default 0.02.
+  /// ROBUST by default. Up is then found by AUTO, with LOW_PASS by PRINCIPAL_AXIS, unless it was set.
+  void setEstimator(Estimator estimator);
+  Estimator getEstimator() const { return estimator_; }
+
+  /// Side of an elevation cell [m], above 0. Default: 0.02; ROBUST: chosen from the data.
   void setCellSize(double cell_size);
-  double getCellSize() const { return parameters_.cell_size; }
+  /// The side set; where it is chosen from the data that of the last run, NaN before the first.
+  double getCellSize() const;
 
   /// Size of the largest object [m], above 0; larger ones count as ground. Takes the place of the relative
   /// size.
@@ -43,55 +60,93 @@ class FFTGroundSegmentation : public GroundSegmentation<PointT> {
   /// The share set; NaN where a size in metres is in force.
   double getRelativeMaximumObjectSize() const;
 
-  /// f_c as a ratio of the Nyquist range, in (0, sqrt 2], or 0 to find it automatically (the default).
+  /// The height tolerance [m] set; with ROBUST, where it is not, that chosen in the last run, NaN before the
+  /// first.
+  double getHeightTolerance() const override;
+
+  /// n of eq. (1), in [1, 100]. Default 2.
+  void setFilterOrder(unsigned order);
+  unsigned getFilterOrder() const { return low_pass_.filter_order; }
+
+  /// A of eq. (1), attenuation at the cut-off [dB], in (0, 100]. Default 3.
+  void setPassbandRipple(double ripple);
+  double getPassbandRipple() const { return low_pass_.passband_ripple; }
+
+  /// ROBUST: steepest ground [m/m], for land that breaks at banks, terraces and quays; 0 for none, the
+  /// default.
+  void setMaximumSlope(double slope);
+  double getMaximumSlope() const { return robust_.max_slope.value_or(0.0); }
+
+  /// ROBUST: shortest wavelength of the ground [m], above 0. Default: chosen from the data.
+  void setFinestWavelength(double wavelength);
+  /// The wavelength set; where it is chosen from the data that of the last run, NaN before the first.
+  double getFinestWavelength() const;
+
+  /// ROBUST: which height stands for a cell until the ground points in it are known. Default LOWEST.
+  void setCellStatistic(CellStatistic statistic) { robust_.statistic = statistic; }
+  CellStatistic getCellStatistic() const { return robust_.statistic.value_or(CellStatistic::LOWEST); }
+
+  /// LOW_PASS: f_c as a ratio of the Nyquist range, in (0, sqrt 2], or 0 to find it automatically (the
+  /// default).
   void setCutoffFrequency(double cutoff);
   /// f_c of the last run; before that the value set, 0 for automatic.
   double getCutoffFrequency() const;
 
-  /// n of eq. (1), in [1, 100]. Default 2.
-  void setFilterOrder(unsigned order);
-  unsigned getFilterOrder() const { return parameters_.filter_order; }
-
-  /// A of eq. (1), attenuation at the cut-off [dB], in (0, 100]. Default 3.
-  void setPassbandRipple(double ripple);
-  double getPassbandRipple() const { return parameters_.passband_ripple; }
-
   /// k: a peak is compared with a window of (2 k + 1) x (2 k + 1) bins, k in [1, 1000]. Default 1,
   /// eight-connected.
   void setPeakWindow(unsigned half_window);
-  unsigned getPeakWindow() const { return parameters_.peaks.half_window; }
+  unsigned getPeakWindow() const { return low_pass_.peaks.half_window; }
 
   /// c of eq. (3): by how much a peak exceeds the rest of its window, finite, at least 0. Default 0.
   void setPeakThreshold(double threshold);
-  double getPeakThreshold() const { return parameters_.peaks.threshold; }
+  double getPeakThreshold() const { return low_pass_.peaks.threshold; }
 
-  /// Whether the axes of the grid are lengthened to products of 2, 3 and 5 for the transform. Default SMOOTH.
-  void setGridLengths(core::GridLengths lengths) { parameters_.grid_lengths = lengths; }
-  core::GridLengths getGridLengths() const { return parameters_.grid_lengths; }
+  /// LOW_PASS: whether the axes of the grid are lengthened to products of 2, 3 and 5 for the transform.
+  /// Default SMOOTH.
+  void setGridLengths(core::GridLengths lengths) { low_pass_.grid_lengths = lengths; }
+  core::GridLengths getGridLengths() const { return low_pass_.grid_lengths; }
 
   /// Elevation grid of the last run; without cells before the first, and after a failed one.
-  const core::ElevationGrid& getElevationGrid() const { return ground_.elevation; }
+  const core::ElevationGrid& getElevationGrid() const;
   /// Share of the elevation cells without a point, [0, 1].
-  double getEmptyCellShare() const { return ground_.elevation.emptyCellShare(); }
-  /// Spectrum of the elevation before the filter.
-  const core::Spectrum& getSpectrum() const { return ground_.spectrum; }
-  /// Spectrum after the filter; computed at each call.
-  core::Spectrum getFilteredSpectrum() const { return ground_.filteredSpectrum(); }
-  /// All peaks of the spectrum, by falling wavelength; both of each conjugate pair.
-  const std::vector<core::SpectrumPeak>& getSpectrumPeaks() const { return ground_.peaks; }
-  /// The cut-off of the last run: f_c, m_c and the peak that gave it.
-  const core::Cutoff& getCutoff() const { return ground_.cutoff; }
+  double getEmptyCellShare() const { return getElevationGrid().emptyCellShare(); }
+  /// Spectrum of the elevation; computed at each call with ROBUST.
+  core::Spectrum getSpectrum() const;
+  /// Spectrum of the ground: with LOW_PASS the former after the filter. Computed at each call.
+  core::Spectrum getFilteredSpectrum() const;
+  /// All peaks of the spectrum, by falling wavelength; both of each conjugate pair. Found at each call with
+  /// ROBUST, which does without them.
+  std::vector<core::SpectrumPeak> getSpectrumPeaks() const;
+  /// The cut-off of the last run: f_c, m_c and where they come from.
+  core::Cutoff getCutoff() const;
   /// Height of the ground over the elevation cells.
-  const core::GroundSurface& getGroundSurface() const override { return ground_.surface; }
+  const core::GroundSurface& getGroundSurface() const override;
+
+  /// Values that ROBUST chose from the data in the last run, with their reasons.
+  std::vector<core::RobustChoice> getChoices() const;
+  /// Spread [m] of the ground points around the surface of ROBUST, a standard deviation; NaN before a run.
+  double getGroundSpread() const;
+  /// Points so deep below the ground of the last run, with ROBUST, that they are noise; they count as
+  /// objects.
+  std::size_t getPointsBelowGround() const { return points_below_; }
 
  protected:
   core::Labels labelPoints(const core::Points& points, const Eigen::Isometry3d& frame_from_input) override;
 
  private:
-  void warnOfDoubts();
+  core::Labels labelByLowPass(const core::Points& points, const Eigen::Isometry3d& frame_from_input);
+  core::Labels labelByRobustFit(const core::Points& points, const Eigen::Isometry3d& frame_from_input);
+  void warnOfEmptyCells();
+  void warnOfLargeObjects();
 
-  core::LowPassParameters parameters_;
-  core::LowPassGround ground_;
+  /// A value of the last run, if that was one of ROBUST that found a ground; NaN otherwise.
+  double chosen(double core::RobustGround::*value) const;
+
+  Estimator estimator_ = Estimator::ROBUST;
+  core::LowPassParameters low_pass_;
+  core::RobustParameters robust_;
+  std::variant<core::LowPassGround, core::RobustGround> ground_;  ///< of the last run
+  std::size_t points_below_ = 0;
 };
 
 }  // namespace pcl_fft_ground

@@ -4,6 +4,7 @@
 #include <pcl/filters/filter_indices.h>
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   Eigen::Vector3d getUpDirection() const { return frame_parameters_.up_direction; }
 
   /// How the direction of positive elevation is found, see core::UpEstimation.
-  void setUpEstimation(UpEstimation estimation) { frame_parameters_.up_estimation = estimation; }
+  void setUpEstimation(UpEstimation estimation);
   UpEstimation getUpEstimation() const { return frame_parameters_.up_estimation; }
 
   /// How the elevation grid is turned about the vertical, see core::Yaw.
@@ -63,11 +64,16 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   /// Height above the ground surface [m], finite, up to which a point still is ground. Default 0, as
   /// published.
   void setHeightTolerance(double tolerance);
-  double getHeightTolerance() const { return height_tolerance_; }
+  virtual double getHeightTolerance() const { return height_tolerance_.value_or(0.0); }
 
   /// Height of the ground, as the method sees it, in the level frame of the last run; without cells before
   /// the first.
   virtual const core::GroundSurface& getGroundSurface() const = 0;
+
+  /// Height above the ground of the last run [m], along up, of each point of the input, in the order of
+  /// setIndices(); NaN for points that are not finite. Empty without an input, a valid list of indices or a
+  /// ground.
+  std::vector<double> getHeightAboveGround() const;
 
   /// Frame of the last run: brings input points into the level frame whose +z is up. Identity before the
   /// first run.
@@ -96,6 +102,12 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
 
   /// Adds a sentence to getWarnings() and logs it.
   void warn(const std::string& sentence);
+
+  /// How up is found unless setUpEstimation() is called.
+  void setDefaultUpEstimation(UpEstimation estimation);
+
+  /// The height tolerance [m], if it was set.
+  const std::optional<double>& givenHeightTolerance() const { return height_tolerance_; }
 
   /// Throws `pcl::PCLException` naming parameter, value and range unless `valid`.
   void requireParameter(bool valid, const std::string& parameter, double value,
@@ -129,7 +141,8 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   void copyOrganized(const core::Labels& labels, PointCloud& output) const;
 
   core::FrameParameters frame_parameters_;
-  double height_tolerance_ = 0.0;
+  bool up_estimation_is_given_ = false;
+  std::optional<double> height_tolerance_;
   Eigen::Isometry3d frame_from_input_ = Eigen::Isometry3d::Identity();
   pcl::Indices far_points_;
   std::string error_;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "clouds.h"
+#include "low_pass_segmentation.h"
 #include "output_capture.h"
-#include "pcl_fft_ground/fft_ground_segmentation.h"
 
 namespace pcl_fft_ground::test {
 
@@ -19,23 +19,30 @@ namespace pcl_fft_ground::test {
 template <template <typename> class SegmenterT>
 struct SegmenterTraits;
 
-template <>
-struct SegmenterTraits<FFTGroundSegmentation> {
+/// Both estimators suited to boxScene().
+struct FFTTraits {
   static constexpr const char* NAME = "FFTGroundSegmentation";
 
-  /// Suits the segmenter to boxScene().
   template <typename PointT>
   static void setUp(FFTGroundSegmentation<PointT>& segmenter) {
     segmenter.setCellSize(0.05);
     segmenter.setMaximumObjectSize(0.8);
   }
 
-  /// True where rounding alone may decide about the label.
+  /// True where rounding alone may decide about the label: at the tolerance, which grows with the slope.
   template <typename PointT>
   static bool isAtSurface(const FFTGroundSegmentation<PointT>& segmenter, const PointT& p) {
-    return std::abs(segmenter.getGroundSurface().heightAbove(Eigen::Vector3d(p.x, p.y, p.z))) < 1e-6;
+    const double height = segmenter.getGroundSurface().heightAbove(Eigen::Vector3d(p.x, p.y, p.z));
+    const double slack = segmenter.getEstimator() == Estimator::LOW_PASS ? 1e-6 : 1e-4;
+    return std::abs(height - segmenter.getHeightTolerance()) < slack;
   }
 };
+
+template <>
+struct SegmenterTraits<FFTGroundSegmentation> : FFTTraits {};
+
+template <>
+struct SegmenterTraits<LowPassSegmentation> : FFTTraits {};
 
 /// A segmenter on a point type: the parameter of the suite.
 template <template <typename> class SegmenterT, typename PointT>

@@ -6,9 +6,10 @@
 
 namespace pcl_fft_ground::test {
 
-using CompiledSubjects = testing::Types<Subject<FFTGroundSegmentation, pcl::PointXYZ>,
-                                        Subject<FFTGroundSegmentation, pcl::PointXYZI>,
-                                        Subject<FFTGroundSegmentation, pcl::PointXYZRGBNormal>>;
+using CompiledSubjects =
+    testing::Types<Subject<FFTGroundSegmentation, pcl::PointXYZ>, Subject<LowPassSegmentation, pcl::PointXYZ>,
+                   Subject<FFTGroundSegmentation, pcl::PointXYZI>,
+                   Subject<FFTGroundSegmentation, pcl::PointXYZRGBNormal>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Compiled, FilterContract, CompiledSubjects);
 
 }  // namespace pcl_fft_ground::test

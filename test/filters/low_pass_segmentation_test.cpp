@@ -1,4 +1,4 @@
-#include "pcl_fft_ground/fft_ground_segmentation.h"
+// FFTGroundSegmentation with the published estimator.
 
 #include <gtest/gtest.h>
 #include <pcl/exceptions.h>
@@ -11,12 +11,13 @@
 #include <string>
 
 #include "clouds.h"
+#include "low_pass_segmentation.h"
 #include "output_capture.h"
 
 namespace pcl_fft_ground::test {
 namespace {
 
-using Segmenter = FFTGroundSegmentation<pcl::PointXYZ>;
+using Segmenter = LowPassSegmentation<pcl::PointXYZ>;
 
 constexpr double CELL = 0.05;
 
@@ -80,7 +81,7 @@ void expectRejected(const std::function<void()>& call, const std::vector<std::st
   }
 }
 
-TEST(FFTGroundSegmentation, DefaultsAreThePapers) {
+TEST(LowPassSegmentation, DefaultsAreThePapers) {
   const Segmenter segmenter;
   EXPECT_EQ(segmenter.getCellSize(), 0.02);
   EXPECT_EQ(segmenter.getRelativeMaximumObjectSize(), 0.5);
@@ -101,7 +102,7 @@ TEST(FFTGroundSegmentation, DefaultsAreThePapers) {
   EXPECT_TRUE(segmenter.getFrame().isApprox(Eigen::Isometry3d::Identity(), 0.0));
 }
 
-TEST(FFTGroundSegmentation, SettersReadBack) {
+TEST(LowPassSegmentation, SettersReadBack) {
   Segmenter segmenter;
   segmenter.setCellSize(0.5);
   segmenter.setHeightTolerance(-0.25);
@@ -121,7 +122,7 @@ TEST(FFTGroundSegmentation, SettersReadBack) {
   EXPECT_EQ(segmenter.getGridLengths(), core::GridLengths::EXACT);
 }
 
-TEST(FFTGroundSegmentation, InvalidValuesAreNamedWithTheirRange) {
+TEST(LowPassSegmentation, InvalidValuesAreNamedWithTheirRange) {
   Segmenter s;
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   for (const auto& [value, text] : std::vector<std::pair<double, std::string>>{
@@ -151,7 +152,7 @@ TEST(FFTGroundSegmentation, InvalidValuesAreNamedWithTheirRange) {
   EXPECT_EQ(s.getFilterOrder(), 2U);
 }
 
-TEST(FFTGroundSegmentation, ElevationGridHoldsTheHighestPointOfEachCell) {
+TEST(LowPassSegmentation, ElevationGridHoldsTheHighestPointOfEachCell) {
   const Scene scene = boxScene();
   Segmenter segmenter = segmenterOn(scene.points);
   segment(segmenter);
@@ -190,7 +191,7 @@ std::complex<double> slowTransform(const Eigen::ArrayXXd& grid, Eigen::Index k, 
   return sum;
 }
 
-TEST(FFTGroundSegmentation, SpectrumBeforeAndAfterTheFilter) {
+TEST(LowPassSegmentation, SpectrumBeforeAndAfterTheFilter) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segmenter.setGridLengths(core::GridLengths::EXACT);
   segmenter.setFilterOrder(3);
@@ -215,7 +216,7 @@ TEST(FFTGroundSegmentation, SpectrumBeforeAndAfterTheFilter) {
   }
 }
 
-TEST(FFTGroundSegmentation, AutomaticCutoffIsTheFirstPeakThatKeepsObjectsOut) {
+TEST(LowPassSegmentation, AutomaticCutoffIsTheFirstPeakThatKeepsObjectsOut) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segment(segmenter);
   const std::vector<core::SpectrumPeak>& peaks = segmenter.getSpectrumPeaks();
@@ -232,7 +233,7 @@ TEST(FFTGroundSegmentation, AutomaticCutoffIsTheFirstPeakThatKeepsObjectsOut) {
   EXPECT_EQ(first->radius, cutoff.frequency);
 }
 
-TEST(FFTGroundSegmentation, GivenCutoffIsUsedUntilItIsAutomaticAgain) {
+TEST(LowPassSegmentation, GivenCutoffIsUsedUntilItIsAutomaticAgain) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segment(segmenter);
   const double automatic = segmenter.getCutoffFrequency();
@@ -250,7 +251,7 @@ TEST(FFTGroundSegmentation, GivenCutoffIsUsedUntilItIsAutomaticAgain) {
   EXPECT_EQ(segmenter.getCutoffFrequency(), automatic);
 }
 
-TEST(FFTGroundSegmentation, WithoutAPeakTheCutoffFollowsFromTheSize) {
+TEST(LowPassSegmentation, WithoutAPeakTheCutoffFollowsFromTheSize) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segmenter.setPeakThreshold(1e6);  // no bin stands out by that much
   segment(segmenter);
@@ -259,7 +260,7 @@ TEST(FFTGroundSegmentation, WithoutAPeakTheCutoffFollowsFromTheSize) {
   EXPECT_NEAR(segmenter.getCutoffFrequency(), 2 * CELL / 0.8, 1e-12);
 }
 
-TEST(FFTGroundSegmentation, OfTwoSizesTheLaterCallWins) {
+TEST(LowPassSegmentation, OfTwoSizesTheLaterCallWins) {
   Segmenter segmenter;
   segmenter.setMaximumObjectSize(1.5);
   EXPECT_EQ(segmenter.getMaximumObjectSize(), 1.5);
@@ -272,7 +273,7 @@ TEST(FFTGroundSegmentation, OfTwoSizesTheLaterCallWins) {
   EXPECT_TRUE(std::isnan(segmenter.getRelativeMaximumObjectSize()));
 }
 
-TEST(FFTGroundSegmentation, RelativeSizeIsAShareOfTheSmallerExtent) {
+TEST(LowPassSegmentation, RelativeSizeIsAShareOfTheSmallerExtent) {
   Segmenter relative = segmenterOn(boxScene().points), in_metres = segmenterOn(boxScene().points);
   for (Segmenter* segmenter : {&relative, &in_metres}) {
     segmenter->setUpEstimation(UpEstimation::GIVEN);  // the rectangle is exactly 4 m x 2.5 m
@@ -285,7 +286,7 @@ TEST(FFTGroundSegmentation, RelativeSizeIsAShareOfTheSmallerExtent) {
   EXPECT_NEAR(relative.getCutoffFrequency(), in_metres.getCutoffFrequency(), 1e-6);
 }
 
-TEST(FFTGroundSegmentation, LabelsFollowFromTheSurface) {
+TEST(LowPassSegmentation, LabelsFollowFromTheSurface) {
   const Scene scene = boxScene();
   for (const double tolerance : {-0.05, 0.0, 0.1}) {
     Segmenter segmenter = segmenterOn(scene.points);
@@ -298,7 +299,7 @@ TEST(FFTGroundSegmentation, LabelsFollowFromTheSurface) {
   }
 }
 
-TEST(FFTGroundSegmentation, FindsTheBoxes) {
+TEST(LowPassSegmentation, FindsTheBoxes) {
   const Scene scene = boxScene();
   Segmenter segmenter = segmenterOn(scene.points);
   segmenter.setMaximumObjectSize(2);  // the lower the cut-off, the less the boxes lift the ground
@@ -309,7 +310,7 @@ TEST(FFTGroundSegmentation, FindsTheBoxes) {
   EXPECT_EQ(wrong, 0U);
 }
 
-TEST(FFTGroundSegmentation, WarnsOfEmptyCells) {
+TEST(LowPassSegmentation, WarnsOfEmptyCells) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segment(segmenter);
   EXPECT_LE(segmenter.getEmptyCellShare(), 0.1);
@@ -324,7 +325,7 @@ TEST(FFTGroundSegmentation, WarnsOfEmptyCells) {
   EXPECT_EQ(capture.standard_output.text(), "");
 }
 
-TEST(FFTGroundSegmentation, WarnsOfASizeAboveTheExtentAndUsesIt) {
+TEST(LowPassSegmentation, WarnsOfASizeAboveTheExtentAndUsesIt) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segmenter.setMaximumObjectSize(50);
   const OutputCapture capture;
@@ -337,7 +338,7 @@ TEST(FFTGroundSegmentation, WarnsOfASizeAboveTheExtentAndUsesIt) {
   EXPECT_EQ(segmenter.getCutoffFrequency(), segmenter.getSpectrumPeaks().front().radius);
 }
 
-TEST(FFTGroundSegmentation, TooLargeAGridIsReportedAndAllIsGround) {
+TEST(LowPassSegmentation, TooLargeAGridIsReportedAndAllIsGround) {
   const auto cloud = cloudOf<pcl::PointXYZ>(boxScene().points);
   spoilPoints(*cloud);
   Segmenter segmenter;
@@ -361,7 +362,7 @@ TEST(FFTGroundSegmentation, TooLargeAGridIsReportedAndAllIsGround) {
   EXPECT_TRUE(segmenter.getError().empty());
 }
 
-TEST(FFTGroundSegmentation, InvalidIndicesLeaveNothingOfTheRunBefore) {
+TEST(LowPassSegmentation, InvalidIndicesLeaveNothingOfTheRunBefore) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segment(segmenter);
   segmenter.setIndices(pcl::IndicesPtr(new pcl::Indices{-1}));
@@ -372,7 +373,7 @@ TEST(FFTGroundSegmentation, InvalidIndicesLeaveNothingOfTheRunBefore) {
   EXPECT_EQ(segmenter.getGroundSurface().height.size(), 0);
 }
 
-TEST(FFTGroundSegmentation, AFarPointDoesNotStretchTheGrid) {
+TEST(LowPassSegmentation, AFarPointDoesNotStretchTheGrid) {
   const Scene scene = boxScene();
   Segmenter undisturbed = segmenterOn(scene.points);
   segment(undisturbed);
@@ -393,7 +394,7 @@ TEST(FFTGroundSegmentation, AFarPointDoesNotStretchTheGrid) {
   EXPECT_TRUE(segmenter.getFarPoints().empty());
 }
 
-TEST(FFTGroundSegmentation, FrameBringsTheCentroidToTheOrigin) {
+TEST(LowPassSegmentation, FrameBringsTheCentroidToTheOrigin) {
   const Scene scene = boxScene();
   Segmenter segmenter = segmenterOn(scene.points);
   segment(segmenter);
@@ -404,7 +405,7 @@ TEST(FFTGroundSegmentation, FrameBringsTheCentroidToTheOrigin) {
   EXPECT_GT(rotation(2, 2), 0.99);
 }
 
-TEST(FFTGroundSegmentation, UpDirectionChoosesTheSideThatIsUp) {
+TEST(LowPassSegmentation, UpDirectionChoosesTheSideThatIsUp) {
   Segmenter segmenter = segmenterOn(boxScene().points);
   segmenter.setUpDirection(-Eigen::Vector3d::UnitZ());
   segment(segmenter);
@@ -416,14 +417,14 @@ TEST(FFTGroundSegmentation, UpDirectionChoosesTheSideThatIsUp) {
                   .isApprox(Eigen::Vector3d::UnitZ(), 1e-9));
 }
 
-TEST(FFTGroundSegmentation, LabelsDoNotDependOnWhereTheSceneLies) {
+TEST(LowPassSegmentation, LabelsDoNotDependOnWhereTheSceneLies) {
   const Eigen::Matrix3Xf points = boxScene().points;
   const Eigen::Matrix3Xf moved = points.colwise() + Eigen::Vector3f(16, -8, 4);  // exact in float
   Segmenter here = segmenterOn(points), there = segmenterOn(moved);
   expectSameLabels(here, there);
 }
 
-TEST(FFTGroundSegmentation, LabelsDoNotDependOnAQuarterTurnAboutUp) {
+TEST(LowPassSegmentation, LabelsDoNotDependOnAQuarterTurnAboutUp) {
   const Eigen::Matrix3Xf points = boxScene().points;
   Eigen::Matrix3Xf quarter = points;
   quarter.row(0) = -points.row(1);
@@ -442,7 +443,7 @@ TEST(FFTGroundSegmentation, LabelsDoNotDependOnAQuarterTurnAboutUp) {
   expectSameLabels(straight, turned_scene);
 }
 
-TEST(FFTGroundSegmentation, LabelsDoNotDependOnPointOrder) {
+TEST(LowPassSegmentation, LabelsDoNotDependOnPointOrder) {
   const Eigen::Matrix3Xf points = boxScene().points;
   const Eigen::Matrix3Xf reversed = points.rowwise().reverse();
   Segmenter forward = segmenterOn(points), backward = segmenterOn(reversed);
@@ -451,7 +452,7 @@ TEST(FFTGroundSegmentation, LabelsDoNotDependOnPointOrder) {
   EXPECT_EQ(objectFlags(forward), backward_flags);
 }
 
-TEST(FFTGroundSegmentation, ATiltedSceneGivesTheLabelsOfTheLevelOne) {
+TEST(LowPassSegmentation, ATiltedSceneGivesTheLabelsOfTheLevelOne) {
   // Turned off the axes, so that the yaw of the grid does not stand where it may jump by a quarter turn.
   const Eigen::Matrix3Xf level = turned(boxScene().points, 20, Eigen::Vector3d::UnitZ());
   const Eigen::Matrix3Xf tilted = turned(level, 30, Eigen::Vector3d(1, 0, 0));

@@ -11,6 +11,7 @@ template <typename PointT>
 GraphCutGroundSegmentation<PointT>::GraphCutGroundSegmentation(bool extract_removed_indices)
     : GroundSegmentation<PointT>("GraphCutGroundSegmentation", core::FrameParameters(),
                                  extract_removed_indices) {
+  this->setDefaultUpEstimation(UpEstimation::AUTO);
   this->setHeightTolerance(0.02);
 }
 

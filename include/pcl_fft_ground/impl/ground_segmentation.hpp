@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -49,6 +50,7 @@ template <typename PointT>
 GroundSegmentation<PointT>::GroundSegmentation(const GroundSegmentation& other)
     : pcl::FilterIndices<PointT>(other),
       frame_parameters_(other.frame_parameters_),
+      up_estimation_is_given_(other.up_estimation_is_given_),
       height_tolerance_(other.height_tolerance_),
       frame_from_input_(other.frame_from_input_),
       far_points_(other.far_points_),
@@ -63,6 +65,7 @@ GroundSegmentation<PointT>& GroundSegmentation<PointT>::operator=(const GroundSe
   pcl::FilterIndices<PointT>::operator=(other);
   if (fake_indices_) indices_.reset();
   frame_parameters_ = other.frame_parameters_;
+  up_estimation_is_given_ = other.up_estimation_is_given_;
   height_tolerance_ = other.height_tolerance_;
   frame_from_input_ = other.frame_from_input_;
   far_points_ = other.far_points_;
@@ -92,6 +95,29 @@ void GroundSegmentation<PointT>::setUpDirection(const Eigen::Vector3d& up) {
   requireParameter(up.allFinite() && length > 0, "length of the up direction", length,
                    "a finite number above 0");
   frame_parameters_.up_direction = (up / up.cwiseAbs().maxCoeff()).normalized();
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::setUpEstimation(UpEstimation estimation) {
+  frame_parameters_.up_estimation = estimation;
+  up_estimation_is_given_ = true;
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::setDefaultUpEstimation(UpEstimation estimation) {
+  if (!up_estimation_is_given_) frame_parameters_.up_estimation = estimation;
+}
+
+template <typename PointT>
+std::vector<double> GroundSegmentation<PointT>::getHeightAboveGround() const {
+  const core::GroundSurface& surface = getGroundSurface();
+  if (!input_ || surface.height.size() == 0) return {};
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  if (!points.areValid()) return {};
+  std::vector<double> heights(points.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t n = 0; n < points.size(); ++n)
+    if (points.isFinite(n)) heights[n] = surface.heightAbove({points[n].x, points[n].y, points[n].z});
+  return heights;
 }
 
 template <typename PointT>
