@@ -158,8 +158,11 @@ void renameField(pcl::PCLPointCloud2& cloud, const std::string& from, const std:
   fieldToChange(cloud, from).name = to;
 }
 
-void setInt32Field(pcl::PCLPointCloud2& cloud, const std::string& name,
-                   const std::vector<std::int32_t>& values) {
+namespace {
+
+template <typename Value>
+void setField(pcl::PCLPointCloud2& cloud, const std::string& name, const std::vector<Value>& values,
+              std::uint8_t datatype) {
   if (values.size() != pointCount(cloud)) {
     throw std::invalid_argument("field '" + name + "' needs one value for each of " +
                                 std::to_string(pointCount(cloud)) + " points, not " +
@@ -171,7 +174,7 @@ void setInt32Field(pcl::PCLPointCloud2& cloud, const std::string& name,
   }
   pcl::PCLPointCloud2 result = packedLayout(cloud, kept);
   const std::size_t value_offset = result.point_step;
-  appendField(result, name, pcl::PCLPointField::INT32, 1);
+  appendField(result, name, datatype, 1);
   allocatePoints(result, cloud.width, cloud.height);
   std::uint8_t* bytes = result.data.data();
   for (std::size_t i = 0; i < values.size(); ++i, bytes += result.point_step) {
@@ -179,6 +182,17 @@ void setInt32Field(pcl::PCLPointCloud2& cloud, const std::string& name,
     std::memcpy(bytes + value_offset, &values[i], sizeof values[i]);
   }
   cloud = std::move(result);
+}
+
+}  // namespace
+
+void setInt32Field(pcl::PCLPointCloud2& cloud, const std::string& name,
+                   const std::vector<std::int32_t>& values) {
+  setField(cloud, name, values, pcl::PCLPointField::INT32);
+}
+
+void setFloatField(pcl::PCLPointCloud2& cloud, const std::string& name, const std::vector<float>& values) {
+  setField(cloud, name, values, pcl::PCLPointField::FLOAT32);
 }
 
 pcl::PCLPointCloud2 selectPoints(const pcl::PCLPointCloud2& cloud, const pcl::Indices& indices) {

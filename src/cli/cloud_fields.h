@@ -53,6 +53,9 @@ void renameField(pcl::PCLPointCloud2& cloud, const std::string& from, const std:
 void setInt32Field(pcl::PCLPointCloud2& cloud, const std::string& name,
                    const std::vector<std::int32_t>& values);
 
+/// The same with float32 values.
+void setFloatField(pcl::PCLPointCloud2& cloud, const std::string& name, const std::vector<float>& values);
+
 /// The points of the given indices, in their order, with all their fields (height 1, padding dropped).
 /// \throws std::out_of_range for an index outside the cloud
 pcl::PCLPointCloud2 selectPoints(const pcl::PCLPointCloud2& cloud, const pcl::Indices& indices);

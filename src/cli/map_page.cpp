@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -57,6 +58,17 @@ Canvas startMap(const MapPage& page, const std::string& title, const Pixels& map
   style.max_width = page.width - 30.0;
   canvas.text({0.5 * page.width, 28.0}, title, style);
   return canvas;
+}
+
+Pixels shadedClasses(const Eigen::ArrayXXi& classes, const Eigen::ArrayXXd& light,
+                     const std::function<Colour(int)>& colour_of) {
+  constexpr std::uint32_t kNothing = 0xffffffffU;
+  Pixels result(classes.rows(), classes.cols());
+  for (Index k = 0; k < classes.size(); ++k) {
+    const int kind = classes.data()[k];
+    result.data()[k] = kind < 0 ? kNothing : packed(shaded(colour_of(kind), light.data()[k]));
+  }
+  return result;
 }
 
 void writeInMiddle(Canvas& canvas, const Plot& plot, const std::string& text) {

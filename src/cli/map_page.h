@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,10 @@ MapPage layOutMap(const GridImage& image, MapKey key);
 
 /// The page with the map's pixels, its axes in metres and its title; the key is yet to be drawn.
 Canvas startMap(const MapPage& page, const std::string& title, const Pixels& map);
+
+/// A map of classes in the light of the relief (see hillShade()), of equal size; classes below 0 are white.
+Pixels shadedClasses(const Eigen::ArrayXXi& classes, const Eigen::ArrayXXd& light,
+                     const std::function<Colour(int)>& colour_of);
 
 /// A remark in the middle of a plot that has nothing to show.
 void writeInMiddle(Canvas& canvas, const Plot& plot, const std::string& text);

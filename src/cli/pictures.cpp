@@ -48,17 +48,6 @@ void requireSameSize(const GridImage& shade, const ArrayXXi& classes) {
     throw std::invalid_argument("the classes of a picture must have the size of its elevation grid");
 }
 
-/// Colours the classes with the relief of the elevation; `colour_of` is not asked for empty cells.
-template <typename ColourOf>
-Pixels shadedClasses(const ArrayXXi& classes, const ArrayXXd& light, const ColourOf& colour_of) {
-  Pixels result(classes.rows(), classes.cols());
-  for (Index k = 0; k < classes.size(); ++k) {
-    const int kind = classes.data()[k];
-    result.data()[k] = kind < 0 ? kNothing : packed(shaded(colour_of(kind), light.data()[k]));
-  }
-  return result;
-}
-
 /// What is needed to write a number on a segment.
 struct Blob {
   Index cells = 0;

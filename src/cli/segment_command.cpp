@@ -22,8 +22,7 @@ constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground segment CLOUD -o DI
 
 Splits a scan into ground and objects, and the objects into segments. CLOUD is a PCD or PLY file or text with
 x y z [label] in each line; coordinates are in metres, and the ground is what lies low. All that most scans
-need is the size of the largest object, --max-object-size, and a --cell-size of two or three times the spacing
-of the points; the values in round brackets, which hold otherwise, suit a close scan of the sea floor.
+need is the size of the largest object, --max-object-size; the values in round brackets hold otherwise.
 )";
 
 constexpr const char* HELP_AFTER = R"(
@@ -39,7 +38,8 @@ Where CLOUD has a label field, TPR, TNR and F1 of the objects are printed.
 
 Examples:
   pcl_fft_ground segment wreck.pcd -o result --max-object-size 1
-  pcl_fft_ground segment street.ply -o result --cell-size 0.5 --max-object-size 10 --height-tolerance 0.2
+  pcl_fft_ground segment street.ply -o result --max-object-size 10
+  pcl_fft_ground segment quarry.pcd -o result --max-object-size 40 --max-slope 0.3
 
 Exit status: 0 done, 1 the work failed, 2 wrong usage.
 )";
@@ -51,8 +51,7 @@ po::options_description commandOptions() {
       "directory for the results; other files in it stay");
   add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
       "how ground is told from objects: naive, planar, grid, graph-cut, fft-lowpass (the published method) "
-      "or fft (at "
-      "present the same)");
+      "or fft (the robust one)");
   add("leaf-size", po::value<double>()->value_name("M"),
       "side of the voxels that cluster the objects [m], above 0; no less than the spacing of the points (the "
       "cell size)");
@@ -60,6 +59,9 @@ po::options_description commandOptions() {
       "points of the smallest segment, at least 1 (10)");
   add("max-cluster-size", po::value<long long>()->value_name("N"),
       "points of the largest segment (no limit)");
+  add("height", po::bool_switch(),
+      "add the height above the ground [m] to labelled.pcd as a field 'height', NaN where a point is not "
+      "finite");
   add("json", po::bool_switch(), "print the report as JSON");
   add("quiet", po::bool_switch(), "print nothing but errors");
   add("help,h", po::bool_switch(), "show this text");
@@ -76,9 +78,9 @@ std::size_t clusterSize(const po::variables_map& values, const std::string& opti
   return static_cast<std::size_t>(size);
 }
 
-ClusterParameters clusterParameters(const po::variables_map& values, double cell_size) {
+ClusterParameters clusterParameters(const po::variables_map& values) {
   ClusterParameters parameters;
-  parameters.leaf_size = values.count("leaf-size") != 0 ? values["leaf-size"].as<double>() : cell_size;
+  if (values.count("leaf-size") != 0) parameters.leaf_size = values["leaf-size"].as<double>();
   if (!std::isfinite(parameters.leaf_size) || parameters.leaf_size <= 0) {
     std::ostringstream message;
     message << "--leaf-size " << parameters.leaf_size << ": allowed is a finite number of metres above 0";
@@ -126,7 +128,7 @@ void segment(const po::variables_map& values) {
   const std::string input = required(values, "cloud", "cloud given: name a PCD, PLY or text file");
   const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
   Segmenter segmenter = makeSegmenter(values["method"].as<std::string>(), values);
-  const ClusterParameters clusters = clusterParameters(values, segmenter.cell_size);
+  ClusterParameters clusters = clusterParameters(values);
   const bool quiet = values["quiet"].as<bool>();
 
   Progress progress(quiet);
@@ -134,7 +136,9 @@ void segment(const po::variables_map& values) {
   const Cloud cloud = readCloud(input);
   progress.begin("segment", "Separating ground from objects");
   Segmentation segmentation = segmentCloud(input, cloud, segmenter);
+  if (values["height"].as<bool>()) segmentation.heights = segmenter.filter->getHeightAboveGround();
   progress.begin("cluster", "Clustering the objects");
+  if (values.count("leaf-size") == 0) clusters.leaf_size = segmenter.cellSize();
   clusterObjects(cloud, clusters, segmentation);
   progress.begin("write", "Writing to " + directory);
   makeDirectory(directory);
@@ -145,7 +149,7 @@ void segment(const po::variables_map& values) {
   writePictures(directory, segmenter, segmentation, cloud);
   progress.end();
 
-  const ordered_json parameters = describeClusterParameters(segmenter.parameters, clusters, values);
+  const ordered_json parameters = describeClusterParameters(segmenter.parametersInForce(), clusters, values);
   const std::vector<std::string> warnings = warningsOf(segmenter, segmentation, clusters);
   const ordered_json report =
       makeReport(input, cloud, segmenter, segmentation, parameters, warnings, progress);

@@ -78,6 +78,10 @@ void writeClouds(const std::string& directory, const Cloud& cloud, const Segment
   renameField(labelled, "segment", "truth_segment");
   setInt32Field(labelled, "label", labelNumbers(segmentation.labels));
   setInt32Field(labelled, "segment", segmentation.segments);
+  if (!segmentation.heights.empty()) {
+    renameField(labelled, "height", "input_height");
+    setFloatField(labelled, "height", {segmentation.heights.begin(), segmentation.heights.end()});
+  }
   const auto write = [&](const std::string& name, const pcl::PCLPointCloud2& points) {
     writePcd(directory + "/" + name, points, cloud.sensor_origin, cloud.sensor_orientation);
   };

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "grid_cell.h"
 #include "output_file.h"
 #include "pictures.h"
 #include "segment_outputs.h"
@@ -18,12 +19,9 @@ Eigen::ArrayXXi classesOfCells(const Cloud& cloud, const Segmentation& segmentat
     if (segmentation.labels[n] == core::Label::NEITHER) continue;
     const Eigen::Vector3d p =
         segmentation.surface.frame_from_input * (*cloud.points)[n].getVector3fMap().cast<double>();
-    const Eigen::Array2d place = ((p.head<2>() - cells.origin) / cells.cell_size).array().floor();
-    if ((place < 0).any() || place.x() >= static_cast<double>(cells.rows) ||
-        place.y() >= static_cast<double>(cells.cols))
-      continue;  // a far point
-    int& cell = classes(static_cast<Eigen::Index>(place.x()), static_cast<Eigen::Index>(place.y()));
-    cell = std::max(cell, value(n));
+    const Eigen::Index cell = cellBelow(cells, p);
+    if (cell < 0) continue;  // a far point
+    classes.data()[cell] = std::max(classes.data()[cell], value(n));
   }
   return classes;
 }
@@ -35,7 +33,7 @@ SpectrumImage spectrumImage(const FFTGroundSegmentation<Point>& fft) {
   image.cutoff = fft.getCutoff().frequency;
   image.object_size = fft.getCutoff().object_size;
   image.cell_size = fft.getCellSize();
-  if (const auto& peak = fft.getCutoff().peak)
+  if (const auto peak = fft.getCutoff().peak)
     image.peak = Eigen::Vector2i(static_cast<int>(peak->k), static_cast<int>(peak->l));
   return image;
 }

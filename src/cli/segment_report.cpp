@@ -44,6 +44,8 @@ const char* nameOf(core::CutoffSource source) {
       return "peak";
     case core::CutoffSource::FALLBACK:
       return "largest object, as no peak qualified";
+    case core::CutoffSource::FINEST_WAVELENGTH:
+      return "finest wavelength";
     case core::CutoffSource::GIVEN:
       break;
   }
@@ -53,19 +55,29 @@ const char* nameOf(core::CutoffSource source) {
 ordered_json describeSpectrum(const FFTGroundSegmentation<Point>* filter) {
   if (filter == nullptr) return nullptr;
   const FFTGroundSegmentation<Point>& fft = *filter;
-  const core::Cutoff& cutoff = fft.getCutoff();
-  const std::vector<core::SpectrumPeak>& peaks = fft.getSpectrumPeaks();
+  const core::Cutoff cutoff = fft.getCutoff();
+  const std::vector<core::SpectrumPeak> peaks = fft.getSpectrumPeaks();
+  const core::Spectrum spectrum = fft.getSpectrum();
   ordered_json nearest = ordered_json::array();
   for (std::size_t n = 0; n < std::min(peaks.size(), PEAKS_IN_REPORT); ++n)
     nearest.push_back(describePeak(peaks[n]));
-  return {{"rows", fft.getSpectrum().rows},
-          {"cols", fft.getSpectrum().cols()},
+  return {{"rows", spectrum.rows},
+          {"cols", spectrum.cols()},
           {"cutoff_frequency", cutoff.frequency},
           {"object_size", cutoff.object_size},
           {"cutoff_from", nameOf(cutoff.source)},
           {"peak", cutoff.peak ? describePeak(*cutoff.peak) : ordered_json()},
           {"peak_count", peaks.size()},
           {"peaks", nearest}};
+}
+
+/// What the robust estimator found out about the ground.
+ordered_json describeGround(const FFTGroundSegmentation<Point>* fft) {
+  if (fft == nullptr || fft->getEstimator() != Estimator::ROBUST) return nullptr;
+  return {{"finest_wavelength", fft->getFinestWavelength()},
+          {"height_tolerance", fft->getHeightTolerance()},
+          {"spread", fft->getGroundSpread()},
+          {"points_below", fft->getPointsBelowGround()}};
 }
 
 ordered_json describeElevation(const core::ElevationGrid& elevation) {
@@ -107,6 +119,7 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
           {"origin", {cloud.origin.x(), cloud.origin.y(), cloud.origin.z()}},
           {"counts", describeCounts(cloud, segmenter, segmentation)},
           {"elevation", describeElevation(segmentation.elevation)},
+          {"ground", describeGround(segmenter.fft)},
           {"spectrum", describeSpectrum(segmenter.fft)},
           {"scores", describeScores(segmentation.confusion)},
           {"warnings", warnings},
@@ -127,12 +140,17 @@ void printSummary(std::ostream& out, const ordered_json& report) {
     printShare(out, counts, "neither");
     out << '\n';
   }
-  const ordered_json &elevation = report["elevation"], &spectrum = report["spectrum"];
+  const ordered_json &elevation = report["elevation"], &ground = report["ground"],
+                     &spectrum = report["spectrum"];
   out << "grid        " << elevation["rows"] << " x " << elevation["cols"] << " cells of "
       << elevation["cell_size"] << " m, " << 100 * elevation["empty_cell_share"].get<double>()
       << " % of them empty\n"
       << std::setprecision(4);
-  if (!spectrum.is_null())
+  if (!ground.is_null())
+    out << "surface     wavelengths from " << ground["finest_wavelength"].get<double>()
+        << " m, ground points spread by " << ground["spread"].get<double>() << " m, objects from "
+        << ground["height_tolerance"].get<double>() << " m above\n";
+  else if (!spectrum.is_null())
     out << "cut-off     f_c = " << spectrum["cutoff_frequency"].get<double>()
         << ", m_c = " << spectrum["object_size"].get<double>() << " m, from "
         << spectrum["cutoff_from"].get<std::string>() << '\n';

@@ -11,26 +11,10 @@
 namespace pcl_fft_ground::cli {
 namespace {
 
-void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& points) {
-  const auto finite = [](const Point& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-  };
-  if (std::none_of(points.begin(), points.end(), finite))
-    throw WorkError(path + ": none of its " + std::to_string(points.size()) +
-                    " points is finite; at least one has to be");
-}
-
-/// The elevation grid in the frame of a method that makes none itself.
+/// The highest point of each cell in the frame of the method, whatever cells it has itself.
 core::ElevationGrid elevationOf(const Cloud& cloud, const Segmenter& segmenter) {
-  const impl::IndexedPoints<Point> all(*cloud.points, nullptr);
-  core::Points points = all.finitePoints();
-  const std::vector<Eigen::Index> far = core::findFarPoints(points, core::summarise(points));
-  for (auto n = far.rbegin(); n != far.rend(); ++n) {
-    points.col(*n) = points.rightCols<1>();
-    points.conservativeResize(Eigen::NoChange, points.cols() - 1);
-  }
-  const core::Points level = core::transformed(std::move(points), segmenter.filter->getFrame());
-  return core::rasteriseHighest(level, core::gridAround(core::boundsOf(level), segmenter.cell_size));
+  const core::Points level = core::transformed(compactPoints(*cloud.points), segmenter.filter->getFrame());
+  return core::rasteriseHighest(level, core::gridAround(core::boundsOf(level), segmenter.cellSize()));
 }
 
 /// A ground surface at the cells of the elevation, whatever cells it has itself.
@@ -47,6 +31,26 @@ core::GroundSurface atCells(const core::GroundSurface& surface, const core::Grid
 
 }  // namespace
 
+void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& points) {
+  const auto finite = [](const Point& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  };
+  if (std::none_of(points.begin(), points.end(), finite))
+    throw WorkError(path + ": none of its " + std::to_string(points.size()) +
+                    " points is finite; at least one has to be");
+}
+
+core::Points compactPoints(const pcl::PointCloud<Point>& cloud) {
+  const impl::IndexedPoints<Point> all(cloud, nullptr);
+  core::Points points = all.finitePoints();
+  const std::vector<Eigen::Index> far = core::findFarPoints(points, core::summarise(points));
+  for (auto n = far.rbegin(); n != far.rend(); ++n) {
+    points.col(*n) = points.rightCols<1>();
+    points.conservativeResize(Eigen::NoChange, points.cols() - 1);
+  }
+  return points;
+}
+
 core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects) {
   core::Labels labels(count, core::Label::NEITHER);
   for (const pcl::index_t n : ground.indices) labels[static_cast<std::size_t>(n)] = core::Label::GROUND;
@@ -61,8 +65,7 @@ Segmentation segmentCloud(const std::string& path, const Cloud& cloud, Segmenter
   segmenter.filter->segment(result.ground, result.objects);
   if (!segmenter.filter->getError().empty()) throw WorkError(path + ": " + segmenter.filter->getError());
   result.labels = labelsOf(cloud.points->size(), result.ground, result.objects);
-  result.elevation =
-      segmenter.fft != nullptr ? segmenter.fft->getElevationGrid() : elevationOf(cloud, segmenter);
+  result.elevation = elevationOf(cloud, segmenter);
   result.surface = atCells(segmenter.filter->getGroundSurface(), result.elevation.geometry);
   if (!cloud.labels.empty()) result.confusion = core::compare(cloud.labels, result.labels);
   return result;

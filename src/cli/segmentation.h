@@ -11,6 +11,7 @@
 #include "pcl_fft_ground/core/elevation_grid.h"
 #include "pcl_fft_ground/core/evaluation.h"
 #include "pcl_fft_ground/core/ground_surface.h"
+#include "pcl_fft_ground/core/points.h"
 #include "segmenter.h"
 
 namespace pcl_fft_ground::cli {
@@ -24,15 +25,22 @@ struct ClusterParameters {
 
 /// What became of a scan.
 struct Segmentation {
-  pcl::PointIndices ground;                  ///< indices of the ground points
-  pcl::PointIndices objects;                 ///< indices of the object points
-  std::vector<pcl::PointIndices> clusters;   ///< the segments, by falling size
-  core::Labels labels;                       ///< per input point
-  std::vector<std::int32_t> segments;        ///< per input point: number of its segment, from 1; 0 none
-  core::ElevationGrid elevation;             ///< highest points, in the level frame
-  core::GroundSurface surface;               ///< ground, in the level frame
+  pcl::PointIndices ground;                 ///< indices of the ground points
+  pcl::PointIndices objects;                ///< indices of the object points
+  std::vector<pcl::PointIndices> clusters;  ///< the segments, by falling size
+  core::Labels labels;                      ///< per input point
+  std::vector<std::int32_t> segments;       ///< per input point: number of its segment, from 1; 0 none
+  std::vector<double> heights;              ///< per input point: above the ground [m]; empty if not asked for
+  core::ElevationGrid elevation;            ///< highest points, in the level frame
+  core::GroundSurface surface;              ///< ground, in the level frame
   std::optional<core::Confusion> confusion;  ///< against the input's labels, if it has some
 };
+
+/// \throws WorkError naming the file if none of the points is finite
+void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& points);
+
+/// The finite points of a cloud without those far from all others (core::findFarPoints()), in any order.
+core::Points compactPoints(const pcl::PointCloud<Point>& cloud);
 
 /// A label per point of a cloud of `count` points: NEITHER where it is in neither list.
 core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects);

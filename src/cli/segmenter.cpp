@@ -31,6 +31,11 @@ constexpr std::array<std::pair<const char*, UpEstimation>, 3> UP_ESTIMATIONS{
 constexpr std::array<std::pair<const char*, Yaw>, 3> YAWS{{{"min-area-rectangle", Yaw::MIN_AREA_RECTANGLE},
                                                            {"principal-axes", Yaw::PRINCIPAL_AXES},
                                                            {"none", Yaw::NONE}}};
+constexpr std::array<std::pair<const char*, bool>, 2> SWITCH{{{"on", true}, {"off", false}}};
+constexpr std::array<std::pair<const char*, Estimator>, 2> ESTIMATORS{
+    {{"robust", Estimator::ROBUST}, {"low-pass", Estimator::LOW_PASS}}};
+constexpr std::array<std::pair<const char*, CellStatistic>, 2> CELL_STATISTICS{
+    {{"lowest", CellStatistic::LOWEST}, {"mean", CellStatistic::MEAN}}};
 
 /// The value that a word stands for.
 template <typename Value, std::size_t N>
@@ -120,23 +125,21 @@ void setUpCommon(GroundSegmentation<Point>& filter, ParameterSetter& parameters)
       [&] { return filter.getHeightTolerance(); });
 }
 
-void setUp(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "cell-size", [&](double v) { fft.setCellSize(v); }, [&] { return fft.getCellSize(); });
-  parameters.set<double>(
-      "max-object-size", [&](double v) { fft.setMaximumObjectSize(v); },
-      [&] { return fft.getMaximumObjectSize(); });
-  parameters.set<double>(
-      "relative-max-object-size", [&](double v) { fft.setRelativeMaximumObjectSize(v); },
-      [&] { return fft.getRelativeMaximumObjectSize(); });
+/// What has to be known before anything else: it decides about defaults.
+template <typename Filter>
+void prepare(Filter&, const std::string&, ParameterSetter&) {}
+
+void prepare(FFTGroundSegmentation<Point>& fft, const std::string& method, ParameterSetter& parameters) {
+  if (method == "fft-lowpass") return fft.setEstimator(Estimator::LOW_PASS);
+  parameters.set<std::string>(
+      "estimator", [&](const auto& v) { fft.setEstimator(valueNamed("estimator", v, ESTIMATORS)); },
+      [&] { return nameOf(fft.getEstimator(), ESTIMATORS); });
+}
+
+void setUpLowPass(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
   parameters.set<double>(
       "cutoff-frequency", [&](double v) { fft.setCutoffFrequency(v); },
       [&] { return fft.getCutoffFrequency(); });
-  parameters.setCount(
-      "filter-order", [&](unsigned v) { fft.setFilterOrder(v); }, [&] { return fft.getFilterOrder(); });
-  parameters.set<double>(
-      "passband-ripple", [&](double v) { fft.setPassbandRipple(v); },
-      [&] { return fft.getPassbandRipple(); });
   parameters.setCount(
       "peak-window", [&](unsigned v) { fft.setPeakWindow(v); }, [&] { return fft.getPeakWindow(); });
   parameters.set<double>(
@@ -147,6 +150,35 @@ void setUp(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
         if (exact) fft.setGridLengths(core::GridLengths::EXACT);
       },
       [&] { return fft.getGridLengths() == core::GridLengths::EXACT; });
+}
+
+void setUpRobustFit(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
+  parameters.set<double>(
+      "max-slope", [&](double v) { fft.setMaximumSlope(v); }, [&] { return fft.getMaximumSlope(); });
+  parameters.set<double>(
+      "finest-wavelength", [&](double v) { fft.setFinestWavelength(v); },
+      [&] { return fft.getFinestWavelength(); });
+  parameters.set<std::string>(
+      "cell-statistic",
+      [&](const auto& v) { fft.setCellStatistic(valueNamed("cell-statistic", v, CELL_STATISTICS)); },
+      [&] { return nameOf(fft.getCellStatistic(), CELL_STATISTICS); });
+}
+
+void setUp(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
+  parameters.set<double>(
+      "cell-size", [&](double v) { fft.setCellSize(v); }, [&] { return fft.getCellSize(); });
+  parameters.set<double>(
+      "max-object-size", [&](double v) { fft.setMaximumObjectSize(v); },
+      [&] { return fft.getMaximumObjectSize(); });
+  parameters.set<double>(
+      "relative-max-object-size", [&](double v) { fft.setRelativeMaximumObjectSize(v); },
+      [&] { return fft.getRelativeMaximumObjectSize(); });
+  parameters.setCount(
+      "filter-order", [&](unsigned v) { fft.setFilterOrder(v); }, [&] { return fft.getFilterOrder(); });
+  parameters.set<double>(
+      "passband-ripple", [&](double v) { fft.setPassbandRipple(v); },
+      [&] { return fft.getPassbandRipple(); });
+  fft.getEstimator() == Estimator::LOW_PASS ? setUpLowPass(fft, parameters) : setUpRobustFit(fft, parameters);
 }
 
 void setUp(NaiveGroundSegmentation<Point>&, ParameterSetter&) {}
@@ -160,6 +192,10 @@ void setUp(PlanarGroundSegmentation<Point>& planar, ParameterSetter& parameters)
       [&] { return planar.getMaxIterations(); });
   parameters.set<double>(
       "probability", [&](double v) { planar.setProbability(v); }, [&] { return planar.getProbability(); });
+  parameters.set<std::string>(
+      "optimize-coefficients",
+      [&](const auto& v) { planar.setOptimizeCoefficients(valueNamed("optimize-coefficients", v, SWITCH)); },
+      [&] { return nameOf(planar.getOptimizeCoefficients(), SWITCH); });
   parameters.setCount(
       "plane-seed", [&](unsigned v) { planar.setSeed(v); }, [&] { return planar.getSeed(); });
 }
@@ -191,6 +227,7 @@ Segmenter make(const std::string& method, const po::variables_map& values) {
   segmenter.method = method;
   auto filter = std::make_unique<Filter>();
   ParameterSetter parameters(values, segmenter.parameters);
+  prepare(*filter, method, parameters);
   setUpCommon(*filter, parameters);
   setUp(*filter, parameters);
   if constexpr (std::is_same_v<Filter, FFTGroundSegmentation<Point>>) segmenter.fft = filter.get();
@@ -201,6 +238,7 @@ Segmenter make(const std::string& method, const po::variables_map& values) {
 /// The side of an elevation cell, which the pictures want of methods, too, that have no use for it.
 double cellSize(const po::variables_map& values) {
   FFTGroundSegmentation<Point> checking;
+  checking.setEstimator(Estimator::LOW_PASS);  // the other one has no fixed cell size
   ordered_json noted;
   ParameterSetter(values, noted)
       .set<double>(
@@ -223,6 +261,21 @@ const std::vector<std::pair<std::string, Maker>>& methods() {
 
 }  // namespace
 
+double Segmenter::cellSize() const {
+  return fft != nullptr ? fft->getCellSize() : default_cell_size;
+}
+
+ordered_json Segmenter::parametersInForce() const {
+  ordered_json result = parameters;
+  if (fft == nullptr) return result;
+  for (const core::RobustChoice& choice : fft->getChoices()) {
+    std::string option = choice.parameter;
+    std::replace(option.begin(), option.end(), '_', '-');
+    result[option] = {{"value", choice.value}, {"from", "data"}, {"reason", choice.reason}};
+  }
+  return result;
+}
+
 const std::vector<std::string>& methodNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> result;
@@ -239,7 +292,7 @@ Segmenter makeSegmenter(const std::string& method, const po::variables_map& valu
   for (const auto& [name, maker] : methods()) {
     if (name == method) {
       Segmenter segmenter = maker(method, values);
-      segmenter.cell_size = cellSize(values);
+      segmenter.default_cell_size = cellSize(values);
       return segmenter;
     }
     allowed += (allowed.empty() ? "" : ", ") + name;

@@ -19,8 +19,15 @@ struct Segmenter {
   std::string method;                                 ///< as spelled on the command line
   std::unique_ptr<GroundSegmentation<Point>> filter;  ///< ready but for its input
   FFTGroundSegmentation<Point>* fft = nullptr;        ///< the same object if it works in the frequency domain
-  double cell_size = 0;                               ///< side of an elevation cell [m]
-  nlohmann::ordered_json parameters;  ///< those in force: option -> {"value", "from": "option" or "default"}
+  double default_cell_size = 0;                       ///< for methods without cells [m]
+  nlohmann::ordered_json
+      parameters;  ///< those set or by default: option -> {"value", "from": "option" or "default"}
+
+  /// Side of an elevation cell [m]; NaN where it is chosen from the data and nothing has been segmented yet.
+  double cellSize() const;
+
+  /// The parameters with those that the last run chose: {"value", "from": "data", "reason"}.
+  nlohmann::ordered_json parametersInForce() const;
 };
 
 /// The methods that there are, by the names that the command line gives them, in the order of the paper's

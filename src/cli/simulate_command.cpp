@@ -1,22 +1,19 @@
 #include "simulate_command.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/program_options.hpp>
-#include <cstring>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
-#include <stdexcept>
 
-#include "cloud_fields.h"
 #include "command_line.h"
 #include "errors.h"
-#include "pcd_cloud.h"
 #include "pcl_fft_ground/core/simulation.h"
 #include "segment_report.h"
+#include "simulate_survey_command.h"
+#include "simulated_cloud.h"
+#include "simulation_options.h"
 
 namespace pcl_fft_ground::cli {
 
@@ -25,6 +22,7 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr const char* help_before = R"(Usage: pcl_fft_ground simulate wreck|pipes|reef -o FILE [options]
+       pcl_fft_ground simulate survey wreck|pipes -o DIR [options]   (see `simulate survey --help`)
 
 Simulates one scan of the sea floor whose truth is known: what a structured-light laser 3 m above the bottom
 sees. wreck is 4 m x 4 m with amphorae, half buried, alone or piled, on a mound; pipes is 6 m x 1.5 m of flat to
@@ -50,6 +48,7 @@ struct Request {
   bool help = false;
   bool quiet = false;
   bool json = false;
+  bool ground_heights = false;
 };
 
 po::options_description describeOptions(Request& request) {
@@ -70,26 +69,20 @@ po::options_description describeOptions(Request& request) {
   add("outlier-share", share(p.outlier_share, "0"), "points that are up to 10 m off: 0 to 0.5");
   add("tilt", po::value(&p.tilt_degrees)->default_value(p.tilt_degrees, "0")->value_name("DEG"),
       "turn of the whole scan about its x axis [degrees]: -45 to 45");
+  add("ground-heights", po::bool_switch(&request.ground_heights),
+      "add a field 'ground': height of the true ground at each point's x and y [m], by which evaluate judges "
+      "surfaces");
   add("quiet", po::bool_switch(&request.quiet), "print nothing");
   add("json", po::bool_switch(&request.json), "print the summary as JSON");
   add("help,h", po::bool_switch(&request.help), "show this text");
   return options;
 }
 
-/// A count, read as a signed number because the parser would take -1 for the largest unsigned one.
-template <typename Count>
-Count toCount(const char* option, long long value, long long most) {
-  if (value < 0 || value > most)
-    throw UsageError(std::string("--") + option + " " + std::to_string(value) +
-                     ": allowed is a whole number from 0 to " + std::to_string(most));
-  return static_cast<Count>(value);
-}
-
 core::SceneKind sceneNamed(const std::string& name) {
   if (name == "wreck") return core::SceneKind::WRECK;
   if (name == "pipes") return core::SceneKind::PIPES;
   if (name == "reef") return core::SceneKind::REEF;
-  throw UsageError("simulate: scene '" + name + "': allowed is wreck, pipes or reef");
+  throw UsageError("simulate: scene '" + name + "': allowed is wreck, pipes or reef, or survey");
 }
 
 void parse(const std::vector<std::string>& arguments, const po::options_description& options,
@@ -102,48 +95,18 @@ void parse(const std::vector<std::string>& arguments, const po::options_descript
 }
 
 void checkComplete(Request& request) {
-  if (request.scene.empty()) throw UsageError("simulate: no scene given: allowed is wreck, pipes or reef");
+  if (request.scene.empty())
+    throw UsageError("simulate: no scene given: allowed is wreck, pipes or reef, or survey");
   request.parameters.scene = sceneNamed(request.scene);
   request.parameters.seed = toCount<std::uint32_t>("seed", request.seed, 4294967295);
   request.parameters.points = toCount<std::size_t>("points", request.points, 100000000);
   if (request.output.empty()) throw UsageError("simulate: no output given: name a PCD file by -o FILE");
 }
 
-/// The option that sets a parameter of the core, for its messages.
-std::string asOption(std::string message) {
-  const std::size_t end = message.find(' ');
-  std::string name = message.substr(0, end);
-  if (name == "tilt_degrees") name = "tilt";
-  std::replace(name.begin(), name.end(), '_', '-');
-  return "--" + name + message.substr(end);
-}
-
 core::SimulatedScan simulate(const core::SimulationParameters& parameters) {
-  try {
-    return core::simulateScan(parameters);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(asOption(error.what()));
-  }
-}
-
-pcl::PCLPointCloud2 asCloud(const core::SimulatedScan& scan) {
-  pcl::PCLPointCloud2 cloud;
-  for (const char* name : {"x", "y", "z"}) appendField(cloud, name, pcl::PCLPointField::FLOAT32, 1);
-  allocatePoints(cloud, scan.labels.size(), 1);
-  for (std::size_t i = 0; i < scan.labels.size(); ++i) {
-    const Eigen::Vector3f point = scan.points.col(static_cast<Eigen::Index>(i));
-    std::memcpy(cloud.data.data() + i * cloud.point_step, point.data(), sizeof(float) * 3);
-  }
-  setInt32Field(cloud, "label", scan.labels);
-  setInt32Field(cloud, "segment", scan.segments);
-  return cloud;
-}
-
-void write(const core::SimulatedScan& scan, const std::string& path) {
-  Eigen::Vector4f position = Eigen::Vector4f::Zero();
-  position.head<3>() = scan.world_from_scan.translation().cast<float>();
-  const Eigen::Quaternionf orientation(Eigen::Quaterniond(scan.world_from_scan.linear()).cast<float>());
-  writePcd(path, asCloud(scan), position, orientation);
+  core::SimulatedScan scan;
+  withOptionNames([&] { scan = core::simulateScan(parameters); });
+  return scan;
 }
 
 struct Summary {
@@ -180,6 +143,10 @@ void printLine(const Request& request, const Summary& summary) {
 }  // namespace
 
 void runSimulate(const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments.front() == "survey") {
+    runSimulateSurvey({arguments.begin() + 1, arguments.end()});
+    return;
+  }
   Request request;
   const po::options_description options = describeOptions(request);
   parse(arguments, options, request);
@@ -189,7 +156,8 @@ void runSimulate(const std::vector<std::string>& arguments) {
   }
   checkComplete(request);
   const core::SimulatedScan scan = simulate(request.parameters);
-  write(scan, request.output);
+  writeSimulatedScan(request.output, scan, scan.world_from_scan,
+                     request.ground_heights ? GroundHeights::WRITE : GroundHeights::OMIT);
   const Summary summary = summarise(scan);
   if (request.json) {
     printJson(request, summary);

@@ -1,5 +1,3 @@
-#include "evaluate_command.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -9,9 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "command_fixture.h"
-#include "errors.h"
-#include "simulate_command.h"
+#include "evaluate_fixture.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -20,31 +16,15 @@ using nlohmann::json;
 
 const Words METHODS{"naive", "planar", "grid", "graph-cut", "fft-lowpass"};
 const std::string METHOD_LIST = "naive,planar,grid,graph-cut,fft-lowpass";
-const Words SETTINGS{"--cell-size", "0.04", "--max-object-size", "0.6", "--max-iterations", "50"};
 
 /// Objects and ground that were and were not found.
 struct Count {
   double tp = 0, fp = 0, tn = 0, fn = 0;
 };
 
-class EvaluateCommand : public CommandFixture {
+class EvaluateCommand : public EvaluateFixture {
  protected:
-  /// `evaluate` with settings that suit the scans.
-  static Printed evaluate(Words words, const Words& more = {}) {
-    words.insert(words.end(), SETTINGS.begin(), SETTINGS.end());
-    words.insert(words.end(), more.begin(), more.end());
-    return run(runEvaluate, words);
-  }
-
   static json evaluateAsJson(const Words& words) { return json::parse(evaluate(words, {"--json"}).out); }
-
-  std::string makeLabelledScan() const { return makeCloud("box.pcd", boxScan()); }
-
-  /// A scan of pipes, some of its points not to be scored.
-  std::string simulatePipes() const {
-    run(runSimulate, {"pipes", "-o", pathOf("pipes.pcd"), "--points", "5000"});
-    return pathOf("pipes.pcd");
-  }
 
   /// Compares the labels that `segment` writes with those of the cloud, point by point.
   Count countBySegment(const std::string& cloud, const std::string& method) const {
@@ -57,22 +37,6 @@ class EvaluateCommand : public CommandFixture {
     std::map<std::pair<double, double>, double> counts;
     for (std::size_t n = 0; n < truth.size(); ++n) ++counts[{truth[n], labels[n]}];
     return {counts[{1, 1}], counts[{0, 1}], counts[{0, 0}], counts[{1, 0}]};
-  }
-
-  /// The message of the error that the command must end in, having printed nothing.
-  template <typename Error>
-  static std::string errorOf(const Words& words) {
-    const StreamText out(std::cout), err(std::cerr);
-    std::string message;
-    try {
-      runEvaluate(words);
-      ADD_FAILURE() << "not refused";
-    } catch (const Error& error) {
-      message = error.what();
-    }
-    EXPECT_EQ(out.str() + err.str(), "");
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    return message;
   }
 };
 
@@ -200,20 +164,6 @@ TEST_F(EvaluateCommand, MeansAreTakenOverTheClouds) {
   EXPECT_NEAR(std::stod(line[1]), all["means"]["naive"]["tpr"].get<double>(), 0.0005001);
 }
 
-TEST_F(EvaluateCommand, SurfaceErrorIsThatAtTheGroundPoints) {
-  // The naive surface is the mean height: its error is the spread of the ground about that.
-  const pcl::PointCloud<pcl::PointXYZL> cloud = boxScan();
-  double mean = 0, sum = 0, count = 0;
-  for (const auto& p : cloud) mean += static_cast<double>(p.z) / static_cast<double>(cloud.size());
-  for (const auto& p : cloud) {
-    if (p.label != 0) continue;
-    sum += std::pow(static_cast<double>(p.z) - mean, 2);
-    ++count;
-  }
-  const json row = evaluateAsJson({makeLabelledScan(), "--methods", "naive"})["results"][0];
-  EXPECT_NEAR(row["surface_rmse"].get<double>(), std::sqrt(sum / count), 1e-5);
-}
-
 TEST_F(EvaluateCommand, AMethodThatFailsHasItsReasonInTheTable) {
   const Words words{makeLabelledScan(), "--methods", "naive,grid,graph-cut,fft-lowpass",
                     "--cell-size",      "1e-9",      "--csv",
@@ -248,29 +198,6 @@ TEST_F(EvaluateCommand, WarningsGoToStandardErrorUnlessQuiet) {
   const Printed printed = evaluate({path, "--methods", "naive"});
   EXPECT_NE(printed.err.find("warning: " + path + ": naive: "), std::string::npos) << printed.err;
   EXPECT_EQ(evaluate({path, "--methods", "naive", "--quiet"}).err, "");
-}
-
-TEST_F(EvaluateCommand, RefusesACloudWithoutLabelsNamingIt) {
-  const std::string path = makeScan();
-  const std::string message = errorOf<WorkError>({path});
-  EXPECT_NE(message.find(path), std::string::npos) << message;
-  EXPECT_NE(message.find("'label'"), std::string::npos) << message;
-  EXPECT_NE(errorOf<WorkError>({pathOf("missing.pcd")}).find("missing.pcd"), std::string::npos);
-}
-
-TEST_F(EvaluateCommand, RefusesWrongUsageNamingIt) {
-  const std::string cloud = makeLabelledScan();
-  const auto expectNamed = [&](const Words& words, const std::string& name) {
-    const std::string message = errorOf<UsageError>(words);
-    EXPECT_NE(message.find(name), std::string::npos) << message;
-  };
-  expectNamed({cloud, "--methods", "naive,kriging"}, "kriging");
-  expectNamed({cloud, "--methods", "naive,,grid"}, "graph-cut");
-  expectNamed({cloud, "--methods", ""}, "--methods");
-  expectNamed({cloud, "--cell-size", "0"}, "--cell-size");
-  expectNamed({cloud, "--probability", "1"}, "--probability");
-  expectNamed({cloud, "--no-such-option"}, "no-such-option");
-  expectNamed({}, "cloud");
 }
 
 TEST_F(EvaluateCommand, ShowsItsHelp) {

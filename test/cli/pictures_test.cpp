@@ -1,6 +1,5 @@
 #include "pictures.h"
 
-#include <cairo.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,12 +8,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "colour_map.h"
 #include "errors.h"
+#include "png.h"
 #include "spectrum_raster.h"
 #include "temporary_folder.h"
 
@@ -27,29 +26,7 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint32_t kWhite = 0xffffffU;
 constexpr std::uint32_t kMagenta = 0xff00ffU;
-
-/// A PNG read back.
-class Png {
- public:
-  explicit Png(const std::filesystem::path& path)
-      : surface_(cairo_image_surface_create_from_png(path.c_str()), cairo_surface_destroy) {
-    EXPECT_EQ(cairo_surface_status(surface_.get()), CAIRO_STATUS_SUCCESS) << path;
-  }
-  int width() const { return cairo_image_surface_get_width(surface_.get()); }
-  int height() const { return cairo_image_surface_get_height(surface_.get()); }
-  /// 0xRRGGBB
-  std::uint32_t at(const Vector2d& position) const {
-    const unsigned char* const row =
-        cairo_image_surface_get_data(surface_.get()) +
-        static_cast<std::ptrdiff_t>(position.y()) * cairo_image_surface_get_stride(surface_.get());
-    return reinterpret_cast<const std::uint32_t*>(row)[static_cast<std::ptrdiff_t>(position.x())] & kWhite;
-  }
-
- private:
-  std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
-};
 
 /// Largest difference of a channel between two colours 0xRRGGBB.
 int difference(std::uint32_t a, std::uint32_t b) {

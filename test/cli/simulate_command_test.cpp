@@ -92,6 +92,18 @@ TEST_F(SimulateCommand, JsonSummarisesTheFile) {
   EXPECT_EQ(summary["objects"], numbers.size());
 }
 
+TEST_F(SimulateCommand, WritesTheTrueGroundHeightsOnlyWhenAsked) {
+  const auto fields = [&] {
+    Words found;
+    for (const pcl::PCLPointField& field : readByPcl(pathOf("scan.pcd")).fields) found.push_back(field.name);
+    return found;
+  };
+  simulate("wreck");
+  EXPECT_EQ(fields(), (Words{"x", "y", "z", "label", "segment"}));
+  simulate("wreck", {"--ground-heights"});
+  EXPECT_EQ(fields(), (Words{"x", "y", "z", "label", "segment", "ground"}));
+}
+
 TEST_F(SimulateCommand, QuietPrintsNothing) {
   const Printed printed = simulate("pipes", {"--quiet"});
   EXPECT_EQ(printed.out + printed.err, "");
