@@ -72,6 +72,7 @@ void segmentLowPass(benchmark::State& state) {
   scan();
   for (auto _ : state) {
     pcl_fft_ground::FFTGroundSegmentation<Point> filter;
+    filter.setEstimator(pcl_fft_ground::Estimator::LOW_PASS);
     filter.setInputCloud(scan());
     filter.setCellSize(CELL);
     filter.setMaximumObjectSize(1.0);
