@@ -134,8 +134,9 @@ Segmenter makeAlignmentSegmenter(const std::string& method, const po::variables_
                                  Version version) {
   Segmenter segmenter = makeSegmenter(method, values);
   const bool knows_tolerance = method == "fft" || method == "graph-cut";
-  if (version == Version::OURS && !knows_tolerance && values.count("height-tolerance") == 0)
-    segmenter.filter->setHeightTolerance(ROUGH_TOLERANCE);
+  if (version == Version::PAPER || knows_tolerance || values.count("height-tolerance") != 0) return segmenter;
+  segmenter.filter->setHeightTolerance(ROUGH_TOLERANCE);
+  segmenter.parameters["height-tolerance"] = {{"value", ROUGH_TOLERANCE}, {"from", "alignment"}};
   return segmenter;
 }
 

@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "align_command.h"
 #include "errors.h"
 #include "evaluate_command.h"
 #include "pcl_fft_ground/version.h"
 #include "segment_command.h"
 #include "simulate_command.h"
+#include "survey_command.h"
 
 namespace {
 
@@ -23,6 +25,9 @@ Commands:
   segment  CLOUD -o DIR              split a scan into ground, objects and segments
   evaluate CLOUD...                  compare methods on labelled scans
   simulate wreck|pipes|reef -o FILE  make a labelled scan of the sea floor
+  simulate survey wreck|pipes -o DIR make the overlapping sub-maps of a survey, with true poses
+  align    REFERENCE MOVING -o DIR   align two overlapping scans by their segments
+  survey   FOLDER -o DIR             align all sub-maps of a survey and map the site
 
 `pcl_fft_ground COMMAND --help` explains a command. Also: --help, --version.
 
@@ -42,13 +47,18 @@ int run(const std::vector<std::string>& words) {
     runEvaluate(arguments);
   } else if (command == "simulate") {
     runSimulate(arguments);
+  } else if (command == "align") {
+    runAlign(arguments);
+  } else if (command == "survey") {
+    runSurvey(arguments);
   } else if (command == "--help" || command == "-h" || command == "help") {
     std::cout << HELP;
   } else if (command == "--version") {
     std::cout << "pcl_fft_ground " << PCL_FFT_GROUND_VERSION << '\n';
   } else {
-    throw UsageError((command.empty() ? "no command given" : "command '" + command + "'") +
-                     std::string(": allowed is segment, evaluate or simulate; see pcl_fft_ground --help"));
+    throw UsageError(
+        (command.empty() ? "no command given" : "command '" + command + "'") +
+        std::string(": allowed is segment, evaluate, simulate, align or survey; see pcl_fft_ground --help"));
   }
   if (!std::cout.flush()) throw WorkError("cannot write to the standard output");
   return 0;

@@ -30,7 +30,9 @@ DIR is made if need be and receives
   labelled.pcd                           all points, in order, with label (0 ground, 1 object, 2 neither) and
                                          segment (1.. by falling size, 0 none)
   ground.pcd objects.pcd                 the ground points and the object points
-  ground_surface.pcd ground_surface.asc  the estimated ground, as points and as an ESRI ASCII grid
+  ground_surface.pcd ground_surface.asc  the estimated ground, as points and as an ESRI ASCII grid; with fft the
+                                         points tell where it is supported by ground seen nearby, and how
+                                         uncertain it is [m]
   segments.csv                           place, extent and height of each segment
   report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores
   elevation.png ground.png spectrum.png labels.png segments.png

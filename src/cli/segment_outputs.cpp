@@ -95,6 +95,12 @@ void writeGroundSurface(const std::string& directory, const Cloud& cloud, const 
   const pcl::PointCloud<Point> points = surfacePoints(surface);
   pcl::PCLPointCloud2 fields;
   pcl::toPCLPointCloud2(points, fields);
+  if (surface.supported.size() > 0) {
+    setInt32Field(fields, "supported",
+                  {surface.supported.data(), surface.supported.data() + surface.supported.size()});
+    const Eigen::ArrayXXf uncertainty = surface.uncertainty.cast<float>();
+    setFloatField(fields, "uncertainty", {uncertainty.data(), uncertainty.data() + uncertainty.size()});
+  }
   writePcd(directory + "/ground_surface.pcd", fields, cloud.sensor_origin, cloud.sensor_orientation);
 
   core::Points corners(3, static_cast<Eigen::Index>(points.size()));

@@ -26,6 +26,12 @@ Eigen::ArrayXXi classesOfCells(const Cloud& cloud, const Segmentation& segmentat
   return classes;
 }
 
+/// The heights of the ground, those left out of which the method knows that it saw no ground nearby.
+Eigen::ArrayXXd knownHeights(const core::GroundSurface& surface) {
+  if (surface.supported.size() == 0) return surface.height;
+  return surface.supported.select(surface.height, std::numeric_limits<double>::quiet_NaN());
+}
+
 SpectrumImage spectrumImage(const FFTGroundSegmentation<Point>& fft) {
   SpectrumImage image;
   image.before = core::magnitude(fft.getSpectrum());
@@ -46,7 +52,7 @@ void writePictures(const std::string& directory, const Segmenter& segmenter, con
   const GridImage top{
       elevation.observed.select(elevation.elevation, std::numeric_limits<double>::quiet_NaN()),
       elevation.geometry.origin, elevation.geometry.cell_size};
-  const GridImage ground{segmentation.surface.height, elevation.geometry.origin,
+  const GridImage ground{knownHeights(segmentation.surface), elevation.geometry.origin,
                          elevation.geometry.cell_size};
   const std::optional<ValueRange> range = robustRange(top.values);
   const auto draw = [&](const std::string& name, const auto& drawing) {

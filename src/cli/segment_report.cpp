@@ -74,9 +74,11 @@ ordered_json describeSpectrum(const FFTGroundSegmentation<Point>* filter) {
 /// What the robust estimator found out about the ground.
 ordered_json describeGround(const FFTGroundSegmentation<Point>* fft) {
   if (fft == nullptr || fft->getEstimator() != Estimator::ROBUST) return nullptr;
+  const core::Mask& supported = fft->getGroundSurface().supported;
   return {{"finest_wavelength", fft->getFinestWavelength()},
           {"height_tolerance", fft->getHeightTolerance()},
           {"spread", fft->getGroundSpread()},
+          {"supported_share", supported.cast<double>().mean()},
           {"points_below", fft->getPointsBelowGround()}};
 }
 

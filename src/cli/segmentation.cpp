@@ -19,6 +19,8 @@ core::ElevationGrid elevationOf(const Cloud& cloud, const Segmenter& segmenter) 
 
 /// A ground surface at the cells of the elevation, whatever cells it has itself.
 core::GroundSurface atCells(const core::GroundSurface& surface, const core::GridGeometry& cells) {
+  const core::GridGeometry& own = surface.geometry;
+  if (own.rows == cells.rows && own.cols == cells.cols && own.cell_size == cells.cell_size) return surface;
   core::GroundSurface result{surface.frame_from_input, cells, Eigen::ArrayXXd(cells.rows, cells.cols)};
   for (Eigen::Index j = 0; j < cells.cols; ++j)
     for (Eigen::Index i = 0; i < cells.rows; ++i) {

@@ -30,8 +30,8 @@ constexpr double HARD_DRIFT = 0.01;  // [m]
 constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground simulate survey wreck|pipes -o DIR [options]
 
 Simulates a survey whose truth is known. A vehicle runs transects to and fro over a site and crosses them twice at the
-end; wreck is 16 m x 10 m of amphorae on mounds in 32 sub-maps of 4 m x 4 m, pipes a field of 16 m x 6 m in 26 sub-maps
-of 6 m x 1.5 m. Neighbours overlap by 30 to 60 %. DIR is made if need be and receives submap_00.pcd, submap_01.pcd ...
+end; wreck is 16 m x 10 m of amphorae on mounds in 32 sub-maps of 4 m x 4 m, pipes is 16 m x 6 m of pipes and stones
+in 26 sub-maps of 6 m x 1.5 m. Neighbours overlap by 30 to 60 %. DIR is made if need be and receives submap_00.pcd, submap_01.pcd ...
 (x y z [m] in the sub-map's own frame, label, segment; the VIEWPOINT is the pose by navigation, which is wrong by
 centimetres to --navigation-error and by up to --heading-error) and truth.csv, the true poses. Equal seeds give equal
 surveys.
@@ -68,7 +68,8 @@ po::options_description describeOptions(Request& request) {
   add("seed", number(request.seed, "1", "N"), "equal seeds give equal surveys: 0 to 4294967295");
   add("points", number(request.points, "600000", "N"), "points of each sub-map: 1 to 100000000");
   add("hard", po::bool_switch(&request.hard), "with 1 cm of drift inside each sub-map");
-  add("object-share", number(p.object_share, "0.3", "SHARE"), "object points over the whole site: 0 to 0.8");
+  add("object-share", number(p.object_share, "0.3", "SHARE"),
+      "share of object points amid the site: 0 to 0.8");
   add("noise", number(p.noise, "0.003", "M"), "standard deviation of the range [m]: 0 to 0.1");
   add("navigation-error", number(p.navigation_error, "0.2", "M"),
       "largest horizontal error of a pose by navigation [m]: 0 to 5");
@@ -116,7 +117,8 @@ void removeEarlierSurvey(const std::string& folder) {
   const std::string truth = folder + "/truth.csv";
   std::error_code ignored;
   if (!fs::exists(truth, ignored)) return;
-  for (const NamedPose& pose : readPoses(truth)) fs::remove(fs::path(folder) / fs::path(pose.submap).filename(), ignored);
+  for (const NamedPose& pose : readPoses(truth))
+    fs::remove(fs::path(folder) / fs::path(pose.submap).filename(), ignored);
   fs::remove(truth, ignored);
 }
 

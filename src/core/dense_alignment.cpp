@@ -23,6 +23,7 @@ constexpr double WHOLE_SCAN_GATE = 25;     // where all points take part [voxels
 constexpr double SETTLED = 0.0005;         // [voxels]
 constexpr std::size_t LEAST_POINTS = 200;  // partners that a result has to rest on
 constexpr double LARGEST_RESIDUAL = 0.5;   // root of the mean squared distance to the planes [voxels]
+constexpr double LEAST_RESIDUAL = 0.1;     // less says nothing about the contrast [voxels]
 constexpr double LARGEST_DISTANCE = 1.5;   // from a plane that counts; more counts the same [voxels]
 constexpr double TEST_SHIFT = 2.5;    // by which a wrong transform is off, to see what that costs [voxels]
 constexpr double LEAST_CONTRAST = 2;  // factor by which it has to raise the mean squared distance
@@ -95,7 +96,8 @@ class DenseIcp {
 
 /// Empty if the surfaces fit, and fit nowhere near by: a plain sea floor fits anywhere.
 std::string reasonAgainstFit(const ScanPair& pair, DenseIcp& icp, const Eigen::Isometry3d& correction) {
-  const double residual = icp.residualAfter(Eigen::Vector3d::Zero(), correction);
+  const double least = std::pow(LEAST_RESIDUAL * pair.voxelSize(), 2);
+  const double residual = std::max(least, icp.residualAfter(Eigen::Vector3d::Zero(), correction));
   if (std::sqrt(residual) > LARGEST_RESIDUAL * pair.voxelSize()) return "the surfaces do not fit";
   const double shift = TEST_SHIFT * pair.voxelSize();
   for (const Eigen::Vector3d& direction :

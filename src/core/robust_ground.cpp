@@ -84,8 +84,8 @@ void describeSurface(const RobustSurface& surface, const RobustPlan& plan, Robus
   ground.surface.geometry = plan.cells;
   ground.surface.height = resampled(surface.heights(), surface.grid(), plan.cells);
   const Eigen::ArrayXXd distance = distanceFromGround(surface.points(), plan.cells);
-  ground.supported = distance <= plan.finest_wavelength;
-  ground.uncertainty = (std::pow(ground.scale, 2) + (plan.slope * distance).square()).sqrt();
+  ground.surface.supported = distance <= plan.finest_wavelength;
+  ground.surface.uncertainty = (std::pow(ground.scale, 2) + (plan.slope * distance).square()).sqrt();
 }
 
 }  // namespace

@@ -112,6 +112,7 @@ double voxelSizeFor(const PointsView& points) {
     side *= 2;
     squares = static_cast<double>(occupiedSquares(points, side));
   }
+  if (squares <= 1) return FINEST;
   const double spacing = side * std::sqrt(squares / count);
   return std::max(FINEST, STEP * std::round(SPACINGS * spacing / STEP));
 }

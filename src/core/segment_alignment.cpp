@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "alignment_gates.h"
@@ -18,6 +17,8 @@ namespace {
 constexpr double FIRST_GATE = 6;     // of ICP from the matched segments' places [voxels]
 constexpr double REPEATED_GATE = 3;  // after segments were associated anew [voxels]
 constexpr int ASSOCIATIONS = 2;
+constexpr double SAME_PLACE = 2;  // solutions that differ by less are the same [voxels]
+constexpr double NEARLY = 0.6;    // share of the best one's merit that makes another a rival
 
 /// A hypothesis that ICP has made precise.
 struct Solution {
@@ -82,6 +83,14 @@ bool isBetter(const Solution& a, const Solution& b) {
   return meritOf(a) > meritOf(b);
 }
 
+/// True if another solution is nearly as good and elsewhere: things repeat themselves.
+bool contradicts(const Solution& other, const Solution& best, double voxel_size) {
+  if (!best.refusal.empty() || !other.refusal.empty()) return false;
+  const Eigen::Vector3d place = best.icp.centre;
+  const Eigen::Vector3d elsewhere = other.icp.correction * (best.icp.correction.inverse() * place);
+  return (elsewhere - place).norm() > SAME_PLACE * voxel_size && meritOf(other) > NEARLY * meritOf(best);
+}
+
 Alignment alignmentOf(const ScanPair& pair, const Solution& solution) {
   if (!solution.refusal.empty()) {
     Alignment result = refused(pair, solution.refusal);
@@ -106,20 +115,29 @@ Alignment alignPlainly(const ScanPair& pair, const std::vector<CandidateMatch>& 
   return alignmentOf(pair, solution);
 }
 
-Alignment alignBySegments(const ScanPair& pair) {
-  if (pair.moving().empty()) return refused(pair, "the moving scan has no segments");
-  if (pair.reference().empty()) return refused(pair, "the reference has no segments");
+/// What the segments say, and whether they say two things.
+struct Attempt {
+  Alignment alignment;
+  bool ambiguous = false;
+};
+
+Attempt alignBySegments(const ScanPair& pair) {
+  if (pair.moving().empty()) return {refused(pair, "the moving scan has no segments")};
+  if (pair.reference().empty()) return {refused(pair, "the reference has no segments")};
   const auto hypotheses = findHypotheses(findCandidates(pair), pair.parameters(), pair.voxelSize());
-  if (hypotheses.empty()) return refused(pair, tooFew(0, pair.parameters()));
-  if (pair.parameters().matching == Matching::PLAIN) return alignPlainly(pair, hypotheses.front());
+  if (hypotheses.empty()) return {refused(pair, tooFew(0, pair.parameters()))};
+  if (pair.parameters().matching == Matching::PLAIN) return {alignPlainly(pair, hypotheses.front())};
   ConstrainedIcp icp(pair);
   const AlignmentScore score(pair);
-  std::optional<Solution> best;
-  for (const std::vector<CandidateMatch>& hypothesis : hypotheses) {
-    Solution solution = solve(pair, hypothesis, icp, score);
-    if (!best || isBetter(solution, *best)) best = std::move(solution);
-  }
-  return alignmentOf(pair, *best);
+  std::vector<Solution> solutions;
+  for (const std::vector<CandidateMatch>& hypothesis : hypotheses)
+    solutions.push_back(solve(pair, hypothesis, icp, score));
+  const Solution& best = *std::min_element(solutions.begin(), solutions.end(), isBetter);
+  const bool ambiguous = std::any_of(solutions.begin(), solutions.end(), [&](const Solution& other) {
+    return contradicts(other, best, pair.voxelSize());
+  });
+  if (ambiguous) return {refused(pair, "the segments fit nearly as well elsewhere"), true};
+  return {alignmentOf(pair, best)};
 }
 
 /// The dense alignment or, where it shows enough segments to be the same, the more precise one by these.
@@ -148,8 +166,9 @@ SearchGates gatesOf(SearchMode mode) {
 Alignment alignScans(const ScanSegments& moving, const ScanSegments& reference,
                      const Eigen::Isometry3d& initial_guess, const AlignmentParameters& parameters) {
   const ScanPair pair(moving, reference, initial_guess, parameters);
-  Alignment result = alignBySegments(pair);
-  if (result.accepted || parameters.fallback == Fallback::NONE) return result;
+  const Attempt attempt = alignBySegments(pair);
+  Alignment result = attempt.alignment;
+  if (result.accepted || attempt.ambiguous || parameters.fallback == Fallback::NONE) return result;
   const Alignment dense = alignDensely(pair, DensePoints::OVERLAP);
   if (dense.accepted) return refinedBySegments(pair, dense);
   result.refusal += "; without segments: " + dense.refusal;

@@ -129,7 +129,8 @@ TEST_P(HullFilterOfSeed, InsideIsInside) {
       nearest_edge = std::min(nearest_edge, edge.x() * to_point.y() - edge.y() * to_point.x());
     }
     inside += nearest_edge > 0 ? 1 : 0;
-    if (recognised[static_cast<std::size_t>(n)]) EXPECT_GT(nearest_edge, 0) << points.col(n).transpose();
+    if (!recognised[static_cast<std::size_t>(n)]) continue;
+    EXPECT_GT(nearest_edge, 0) << points.col(n).transpose();
   }
   EXPECT_GT(std::count(recognised.begin(), recognised.end(), true), 0.9 * inside);
 }

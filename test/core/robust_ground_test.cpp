@@ -121,7 +121,7 @@ TEST_P(BareGround, HasNoObjects) {
       100000, 4, 4, [&](double x, double y) { return GetParam().height(x, y) + noise(random); }, random);
   const RobustGround ground = groundOf(points, largestObject(1));
   EXPECT_LT(objectsIn(labelRobust(points, ground).labels), 200U);
-  EXPECT_TRUE(ground.supported.all());
+  EXPECT_TRUE(ground.surface.supported.all());
   EXPECT_NEAR(ground.scale, NOISE, 0.2 * NOISE);
   for (const double at : {0.5, 1.5, 2.5, 3.5})
     EXPECT_NEAR(ground.surface.heightAt(at, 4 - at), GetParam().height(at, 4 - at), NOISE);
@@ -162,9 +162,9 @@ TEST(RobustGround, SpansAHoleAndSaysSo) {
   const RobustGround ground = groundOf(scene.points, largestObject(1));
   const double cell = ground.elevation.geometry.cell_size;
   const auto i = static_cast<Eigen::Index>(1 / cell), j = static_cast<Eigen::Index>(3 / cell);
-  EXPECT_FALSE(ground.supported(i, j));
-  EXPECT_TRUE(ground.supported(i, static_cast<Eigen::Index>(1 / cell)));
-  EXPECT_GT(ground.uncertainty(i, j), 2 * ground.scale);
+  EXPECT_FALSE(ground.surface.supported(i, j));
+  EXPECT_TRUE(ground.surface.supported(i, static_cast<Eigen::Index>(1 / cell)));
+  EXPECT_GT(ground.surface.uncertainty(i, j), 2 * ground.scale);
   EXPECT_NEAR(ground.surface.heightAt(1, 3), 0.1, 0.02);
 }
 
@@ -247,7 +247,7 @@ TEST(RobustGround, OfDegenerateCloudsIsFinite) {
       const RobustGround ground = groundOf(points, parameters);
       ASSERT_GT(ground.surface.height.size(), 0);
       EXPECT_TRUE(ground.surface.height.isFinite().all());
-      EXPECT_TRUE(ground.uncertainty.isFinite().all());
+      EXPECT_TRUE(ground.surface.uncertainty.isFinite().all());
       EXPECT_TRUE(std::isfinite(ground.tolerance));
       EXPECT_EQ(objectsIn(labelRobust(points, ground).labels), 0U);
     }

@@ -16,6 +16,8 @@ struct GroundSurface {
       Eigen::Isometry3d::Identity();  ///< brings input points into the level frame
   GridGeometry geometry;              ///< the cells, in the level frame
   Eigen::ArrayXXd height;             ///< height at the cell centres [m]
+  Mask supported = {};  ///< true where ground was observed nearby; no cells if the method does not tell
+  Eigen::ArrayXXd uncertainty = {};  ///< standard deviation to be expected of the height [m]; likewise
 
   /** Height of the ground [m] at a place of the level frame: bilinear between cell centres.
    * Beyond the outermost cell centres the height of the border continues. The surface must have at least one

@@ -42,18 +42,16 @@ struct RobustChoice {
 
 /// The ground of a scan, how sure it is, and what led to it.
 struct RobustGround {
-  ElevationGrid elevation;            ///< height of each cell by the statistic
-  double extent = 0;                  ///< smaller horizontal extent of the points [m]
-  double max_object_size = 0;         ///< m_u extent, or the size given [m]
-  GroundSurface surface;              ///< the ground
-  Mask supported;                     ///< cells with ground observed within the finest wavelength
-  Eigen::ArrayXXd uncertainty;        ///< standard deviation to be expected of the surface, per cell [m]
-  double scale = 0;                   ///< spread of the ground points around the surface [m]
-  double tolerance = 0;               ///< an object is higher above the surface than this [m]
-  double slope_tolerance = 0;         ///< plus this times the local slope [m]
-  double depth_tolerance = 0;         ///< a point deeper below the surface than this is an object [m]
-  double finest_wavelength = 0;       ///< of the surface [m]
-  std::vector<double> wavelengths;    ///< all scales, coarse to fine [m]
+  ElevationGrid elevation;          ///< height of each cell by the statistic
+  double extent = 0;                ///< smaller horizontal extent of the points [m]
+  double max_object_size = 0;       ///< m_u extent, or the size given [m]
+  GroundSurface surface;            ///< the ground; supported within the finest wavelength of observed ground
+  double scale = 0;                 ///< spread of the ground points around the surface [m]
+  double tolerance = 0;             ///< an object is higher above the surface than this [m]
+  double slope_tolerance = 0;       ///< plus this times the local slope [m]
+  double depth_tolerance = 0;       ///< a point deeper below the surface than this is an object [m]
+  double finest_wavelength = 0;     ///< of the surface [m]
+  std::vector<double> wavelengths;  ///< all scales, coarse to fine [m]
   std::vector<RobustChoice> choices;  ///< of the values that were not set
 };
 

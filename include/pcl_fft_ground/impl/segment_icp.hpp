@@ -30,7 +30,8 @@ std::vector<pcl::PointIndices> clustersOf(const typename pcl::PointCloud<PointT>
   typename GroundSegmentation<PointT>::Ptr segmentation = ground_segmentation;
   if (!segmentation) segmentation.reset(new FFTGroundSegmentation<PointT>);
   segmentation->setInputCloud(cloud);
-  segmentation->setIndices(indices);
+  // All points of the target: PCLBase copies constant indices, so that there it must not be given none.
+  segmentation->setIndices(indices ? pcl::IndicesPtr(new pcl::Indices(*indices)) : pcl::IndicesPtr());
   pcl::PointIndices ground;
   const pcl::PointIndices::Ptr objects(new pcl::PointIndices);
   segmentation->segment(ground, *objects);
