@@ -52,7 +52,8 @@ explain_other_system() {
   cat >&2 <<'TEXT'
 install_dependencies.sh: this system is neither Debian nor Ubuntu, so nothing was installed. Please install
   a C and a C++17 compiler, CMake >= 3.16, make, pkg-config
-  PCL >= 1.12 (common, filters, sample_consensus; io for the command; search, segmentation for tests and examples)
+  PCL >= 1.12 (common, filters, sample_consensus; io for the command; search, segmentation for tests and examples; registration
+  for SegmentICP)
   Eigen >= 3.4, Boost >= 1.71 (headers; program_options for the command), FLANN
   Cairo, nlohmann-json >= 3.9 and a sans-serif font for the command; GoogleTest >= 1.10 for the tests
 and run the same command again with PCL_FFT_GROUND_SKIP_INSTALL=1 in the environment.
