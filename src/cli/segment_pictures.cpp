@@ -61,8 +61,10 @@ void writePictures(const std::string& directory, const Segmenter& segmenter, con
   draw("elevation.png", [&](const auto& path) {
     drawHeights(path, "Elevation: highest point of each cell", top, "height [m]", range);
   });
-  draw("ground.png",
-       [&](const auto& path) { drawHeights(path, "Ground surface", ground, "height [m]", range); });
+  const char* const ground_title = segmentation.surface.supported.size() == 0
+                                       ? "Ground surface"
+                                       : "Ground surface; white where no ground was seen nearby";
+  draw("ground.png", [&](const auto& path) { drawHeights(path, ground_title, ground, "height [m]", range); });
   if (segmenter.fft != nullptr)
     draw("spectrum.png", [&](const auto& path) { drawSpectrum(path, spectrumImage(*segmenter.fft)); });
 

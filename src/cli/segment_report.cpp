@@ -145,8 +145,8 @@ void printSummary(std::ostream& out, const ordered_json& report) {
   const ordered_json &elevation = report["elevation"], &ground = report["ground"],
                      &spectrum = report["spectrum"];
   out << std::setprecision(4) << std::defaultfloat << "grid        " << elevation["rows"] << " x "
-      << elevation["cols"] << " cells of " << elevation["cell_size"].get<double>() << " m, " << 100 * elevation["empty_cell_share"].get<double>()
-      << " % of them empty\n"
+      << elevation["cols"] << " cells of " << elevation["cell_size"].get<double>() << " m, "
+      << 100 * elevation["empty_cell_share"].get<double>() << " % of them empty\n"
       << std::setprecision(4);
   if (!ground.is_null())
     out << "surface     wavelengths from " << ground["finest_wavelength"].get<double>()

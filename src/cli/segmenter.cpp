@@ -73,6 +73,9 @@ class ParameterSetter {
  public:
   ParameterSetter(const po::variables_map& values, ordered_json& noted) : values_(values), noted_(noted) {}
 
+  /// One that reads the same options and notes them elsewhere.
+  ParameterSetter notingIn(ordered_json& noted) const { return {values_, noted}; }
+
   /// Calls the setter if the option was given; its complaint becomes one about the option. Then notes the
   /// getter's value.
   template <typename Value, typename Set, typename Get>
@@ -178,7 +181,12 @@ void setUp(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
   parameters.set<double>(
       "passband-ripple", [&](double v) { fft.setPassbandRipple(v); },
       [&] { return fft.getPassbandRipple(); });
-  fft.getEstimator() == Estimator::LOW_PASS ? setUpLowPass(fft, parameters) : setUpRobustFit(fft, parameters);
+  // What is of the other estimator only is checked all the same.
+  ordered_json not_in_force;
+  ParameterSetter others = parameters.notingIn(not_in_force);
+  const bool low_pass = fft.getEstimator() == Estimator::LOW_PASS;
+  setUpLowPass(fft, low_pass ? parameters : others);
+  setUpRobustFit(fft, low_pass ? others : parameters);
 }
 
 void setUp(NaiveGroundSegmentation<Point>&, ParameterSetter&) {}

@@ -80,7 +80,7 @@ void drawPanel(Canvas& canvas, const SpectrumImage& image, SpectrumPanel which, 
     for (Tick& tick : ticks) tick.label.clear();
   drawLeftAxis(canvas, panel, ticks, is_before ? "y frequency / Nyquist" : "");
   canvas.text({panel.area.x + 0.5 * panel.area.width, panel.area.y - 18.0},
-              is_before ? "(a) elevation" : "(b) after the low-pass", {15.0, Anchor::MIDDLE, kInk});
+              is_before ? "(a) elevation" : "(b) ground surface", {15.0, Anchor::MIDDLE, kInk});
 }
 
 void drawCurve(Canvas& canvas, const Plot& plot, const std::vector<Vector2d>& profile, const Stroke& stroke) {
@@ -130,7 +130,7 @@ void drawProfile(Canvas& canvas, const SpectrumImage& image, double reference, d
     canvas.text({x + 36.0, height}, text, {13.0, Anchor::START, kInk});
   };
   entry(y, kBefore, "elevation");
-  entry(y + 20.0, kAfter, "after the low-pass");
+  entry(y + 20.0, kAfter, "ground surface");
 }
 
 }  // namespace
