@@ -40,7 +40,7 @@ Points thinnestHalf(const Points& points, const Eigen::Vector3d& direction) {
 
 Sheet concentrated(const Points& points, const Eigen::Vector3d& start, const Eigen::Vector3d& given) {
   constexpr int STEPS = 30;
-  constexpr double SETTLED = 1e-4;
+  constexpr double SETTLED = 5e-4;  // [rad]
   Sheet sheet{start};
   for (int n = 0; n < STEPS; ++n) {
     const Eigen::Vector3d last = sheet.normal;
@@ -57,21 +57,27 @@ bool isTrusted(const Sheet& sheet, const Eigen::Vector3d& given) {
          sheet.normal.dot(given) >= MOST_LEANING;
 }
 
+/// The thinner of the trusted sheets that the two starts lead to.
+std::optional<Sheet> flattestHalf(const Points& points, const Eigen::Vector3d& given) {
+  std::optional<Sheet> best;
+  for (const Eigen::Vector3d& start : {given, principalSheet(points, given).normal}) {
+    const Sheet sheet = concentrated(points, start, given);
+    if (isTrusted(sheet, given) && (!best || sheet.thickness < best->thickness)) best = sheet;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointsView& points, const Eigen::Vector3d& given) {
-  constexpr Eigen::Index FEWEST_POINTS = 8;
-  if (points.cols() < FEWEST_POINTS) return std::nullopt;
-  constexpr Eigen::Index ENOUGH = 10000;
+  constexpr Eigen::Index FEWEST_POINTS = 8, ENOUGH = 4000, ENOUGH_TO_START = 1000;
   const Points sample = sampleOf(points, ENOUGH);
   if (sample.cols() < FEWEST_POINTS) return std::nullopt;
-  std::optional<Sheet> best;
-  for (const Eigen::Vector3d& start : {given, principalSheet(sample, given).normal}) {
-    const Sheet sheet = concentrated(sample, start, given);
-    if (isTrusted(sheet, given) && (!best || sheet.thickness < best->thickness)) best = sheet;
-  }
-  if (!best) return std::nullopt;
-  return best->normal;
+  const Points few = sampleOf(points, ENOUGH_TO_START);
+  const std::optional<Sheet> rough = few.cols() < FEWEST_POINTS ? std::nullopt : flattestHalf(few, given);
+  if (!rough) return std::nullopt;
+  const Sheet sheet = concentrated(sample, rough->normal, given);
+  return isTrusted(sheet, given) ? std::optional<Eigen::Vector3d>(sheet.normal) : std::nullopt;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -68,19 +68,31 @@ void voxelGrid(benchmark::State& state) {
   }
 }
 
-void segmentLowPass(benchmark::State& state) {
+/// segment() of a new filter, set up by `set_up`.
+template <typename SetUp>
+void segmentScan(benchmark::State& state, const SetUp& set_up) {
   scan();
   for (auto _ : state) {
     pcl_fft_ground::FFTGroundSegmentation<Point> filter;
-    filter.setEstimator(pcl_fft_ground::Estimator::LOW_PASS);
     filter.setInputCloud(scan());
-    filter.setCellSize(CELL);
     filter.setMaximumObjectSize(1.0);
+    set_up(filter);
     pcl::PointIndices ground, objects;
     filter.segment(ground, objects);
     benchmark::DoNotOptimize(ground.indices.data());
     benchmark::DoNotOptimize(objects.indices.data());
   }
+}
+
+void segmentLowPass(benchmark::State& state) {
+  segmentScan(state, [](auto& filter) {
+    filter.setEstimator(pcl_fft_ground::Estimator::LOW_PASS);
+    filter.setCellSize(CELL);
+  });
+}
+
+void segmentRobust(benchmark::State& state) {
+  segmentScan(state, [](auto&) {});
 }
 
 void euclideanClusters(benchmark::State& state) {
@@ -112,6 +124,7 @@ void voxelClusters(benchmark::State& state) {
 
 BENCHMARK(voxelGrid)->Unit(benchmark::kMillisecond);
 BENCHMARK(segmentLowPass)->Unit(benchmark::kMillisecond);
+BENCHMARK(segmentRobust)->Unit(benchmark::kMillisecond);
 BENCHMARK(euclideanClusters)->Unit(benchmark::kMillisecond);
 BENCHMARK(voxelClusters)->Unit(benchmark::kMillisecond);
 
@@ -153,6 +166,8 @@ int main(int argc, char** argv) {
   MedianReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   reporter.printRatio("segment (LOW_PASS) / pcl::VoxelGrid", "segmentLowPass", "voxelGrid");
+  reporter.printRatio("segment (ROBUST) / pcl::VoxelGrid", "segmentRobust", "voxelGrid");
+  reporter.printRatio("segment (ROBUST) / segment (LOW_PASS)", "segmentRobust", "segmentLowPass");
   reporter.printRatio("pcl::EuclideanClusterExtraction / VoxelClusterExtraction", "euclideanClusters",
                       "voxelClusters");
   return 0;
