@@ -26,14 +26,14 @@ mkdir -p "$output"
 "$tool" simulate wreck -o "$output/wreck.pcd"
 
 echo "Taking the ground out of it"
-"$tool" segment "$output/wreck.pcd" -o "$output"
+"$tool" segment "$output/wreck.pcd" -o "$output" --max-object-size 1
 
 cat <<TEXT
 
 Done. Look at the pictures in $output:
   elevation.png   the scan from above, coloured by height
   ground.png      the ground surface found under the objects
-  spectrum.png    the terrain's spectrum before and after the filter, with the cut-off
+  spectrum.png    the spectra of the terrain and of its ground
   labels.png      what is ground and what is object
   segments.png    the objects, one colour each
 TEXT

@@ -277,6 +277,7 @@ ordered_json Segmenter::parametersInForce() const {
   ordered_json result = parameters;
   if (fft == nullptr) return result;
   for (const core::RobustChoice& choice : fft->getChoices()) {
+    if (choice.parameter == "statistic") continue;  // an option with a word for a value, noted as the default
     std::string option = choice.parameter;
     std::replace(option.begin(), option.end(), '_', '-');
     result[option] = {{"value", choice.value}, {"from", "data"}, {"reason", choice.reason}};

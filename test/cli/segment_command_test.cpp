@@ -315,6 +315,30 @@ TEST_F(SegmentCommand, HeightsAboveTheGroundAreAFieldWhereAskedFor) {
     }
 }
 
+TEST_F(SegmentCommand, TheLowPassEstimatorIsThePublishedMethod) {
+  const std::string scan = makeScan();
+  segment(scan, {"--estimator", "low-pass"});
+  const std::vector<double> by_estimator = labels();
+  segment(scan, {"--method", "fft-lowpass"});
+  EXPECT_EQ(labels(), by_estimator);
+  EXPECT_TRUE(report()["ground"].is_null());
+  segment(scan);
+  EXPECT_GT(differing(labels(), by_estimator), 0u);
+}
+
+TEST_F(SegmentCommand, TheSurfaceTellsWhereItIsSupportedIfTheMethodKnows) {
+  const std::string scan = makeScan();
+  segment(scan, {"--method", "fft-lowpass"});
+  EXPECT_EQ(findField(readByPcl(outputOf("ground_surface.pcd")), "supported"), nullptr);
+  segment(scan);
+  const pcl::PCLPointCloud2 surface = readByPcl(outputOf("ground_surface.pcd"));
+  const std::vector<double> supported = valuesOf(surface, "supported");
+  const double count = std::accumulate(supported.begin(), supported.end(), 0.0);
+  EXPECT_NEAR(count / static_cast<double>(supported.size()), report()["ground"]["supported_share"], 1e-9);
+  for (const double uncertainty : valuesOf(surface, "uncertainty"))
+    EXPECT_GE(uncertainty, 0.999 * report()["ground"]["spread"].get<double>());
+}
+
 TEST_F(SegmentCommand, ScoresComeFromTheLabelsOfTheInput) {
   pcl::PointCloud<pcl::PointXYZL> cloud = boxScan();
   for (std::size_t n = 0; n < 500; ++n) cloud[n].label = 2;  // not scored

@@ -19,9 +19,8 @@ using nlohmann::json;
 class SurveyCommand : public CommandFixture {
  protected:
   static void SetUpTestSuite() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "pcl_fft_ground_survey_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    site_ = pattern;
+    site_ = makeTemporaryFolder();
+    ASSERT_FALSE(site_.empty());
     run(runSimulate, {"survey", "pipes", "-o", site_, "--points", "60000", "--seed", "1"});
     for (int i = 4; i < 26; ++i)
       std::filesystem::remove(site_ + (i < 10 ? "/submap_0" : "/submap_") + std::to_string(i) + ".pcd");

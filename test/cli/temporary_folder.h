@@ -12,13 +12,18 @@
 
 namespace pcl_fft_ground::cli {
 
+/// A new folder, which nobody removes by itself; empty if it could not be made.
+inline std::string makeTemporaryFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "pcl_fft_ground_XXXXXX").string();
+  return mkdtemp(pattern.data()) != nullptr ? pattern : std::string();
+}
+
 /// A fixture with a folder of its own that is removed after the test.
 class TemporaryFolder : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = (std::filesystem::temp_directory_path() / "pcl_fft_ground_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
+    folder_ = makeTemporaryFolder();
+    ASSERT_FALSE(folder_.empty());
   }
 
   void TearDown() override { std::filesystem::remove_all(folder_); }

@@ -50,7 +50,7 @@ struct LowPassGround {
  * \param points points in the level frame, at least one
  * \param frame_from_input the transform that brought them there, kept in the surface
  * \throws std::length_error if the grid would have more than MAX_CELLS cells
- * \note O(points + cells log cells) time, about 60 bytes a cell
+ * \note O(points + cells log cells) time, about 32 bytes a cell
  */
 PCL_FFT_GROUND_CORE_EXPORT LowPassGround estimateLowPassGround(const PointsView& points,
                                                                const Eigen::Isometry3d& frame_from_input,
