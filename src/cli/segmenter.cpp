@@ -1,17 +1,14 @@
 #include "segmenter.h"
 
-#include <pcl/exceptions.h>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "command_line.h"
 #include "errors.h"
+#include "parameter_setter.h"
 #include "pcl_fft_ground/graph_cut_ground_segmentation.h"
 #include "pcl_fft_ground/grid_ground_segmentation.h"
 #include "pcl_fft_ground/naive_ground_segmentation.h"
@@ -37,23 +34,6 @@ constexpr std::array<std::pair<const char*, Estimator>, 2> ESTIMATORS{
 constexpr std::array<std::pair<const char*, CellStatistic>, 2> CELL_STATISTICS{
     {{"lowest", CellStatistic::LOWEST}, {"mean", CellStatistic::MEAN}}};
 
-/// The value that a word stands for.
-template <typename Value, std::size_t N>
-Value valueNamed(const std::string& option, const std::string& word,
-                 const std::array<std::pair<const char*, Value>, N>& names) {
-  std::string allowed;
-  for (const auto& [name, value] : names) {
-    if (word == name) return value;
-    allowed += (allowed.empty() ? "" : ", ") + std::string(name);
-  }
-  throw UsageError("--" + option + " " + word + ": allowed is one of " + allowed);
-}
-
-template <typename Value, std::size_t N>
-std::string nameOf(Value value, const std::array<std::pair<const char*, Value>, N>& names) {
-  return std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.second == value; })->first;
-}
-
 Eigen::Vector3d toDirection(const std::string& text) {
   std::string_view rest = text;
   const std::optional<double> x = parseNumber<double>(takeWord(rest)),
@@ -67,50 +47,6 @@ Eigen::Vector3d toDirection(const std::string& text) {
 std::vector<double> asList(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
-
-/// Sets the parameters of one filter from the options and notes which value is in force, and why.
-class ParameterSetter {
- public:
-  ParameterSetter(const po::variables_map& values, ordered_json& noted) : values_(values), noted_(noted) {}
-
-  /// One that reads the same options and notes them elsewhere.
-  ParameterSetter notingIn(ordered_json& noted) const { return {values_, noted}; }
-
-  /// Calls the setter if the option was given; its complaint becomes one about the option. Then notes the
-  /// getter's value.
-  template <typename Value, typename Set, typename Get>
-  void set(const std::string& option, const Set& setter, const Get& getter) {
-    const bool given = values_.count(option) != 0 && !values_[option].defaulted();
-    try {
-      if (given) setter(values_[option].as<Value>());
-    } catch (const pcl::PCLException& problem) {
-      const std::string message = problem.what();  // "Class: parameter is value, must be range"
-      throw UsageError("--" + option + message.substr(message.rfind(": ")));
-    }
-    const auto value = getter();
-    if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>)
-      if (std::isnan(value)) return;  // not in force
-    noted_[option] = {{"value", value}, {"from", given ? "option" : "default"}};
-  }
-
-  /// A count, read as a signed number because the parser would take -1 for the largest unsigned one.
-  template <typename Set, typename Get>
-  void setCount(const std::string& option, const Set& setter, const Get& getter) {
-    set<long long>(
-        option,
-        [&](long long value) {
-          if (value < 0 || value > 1000000000)
-            throw UsageError("--" + option + " " + std::to_string(value) +
-                             ": allowed is a whole number from 0 to 1e9");
-          setter(static_cast<unsigned>(value));
-        },
-        getter);
-  }
-
- private:
-  const po::variables_map& values_;
-  ordered_json& noted_;
-};
 
 void setUpCommon(GroundSegmentation<Point>& filter, ParameterSetter& parameters) {
   parameters.set<std::string>(
