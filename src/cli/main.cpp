@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "align_command.h"
+#include "align/align_command.h"
 #include "errors.h"
-#include "evaluate_command.h"
+#include "evaluate/evaluate_command.h"
 #include "pcl_fft_ground/version.h"
-#include "segment_command.h"
-#include "simulate_command.h"
-#include "survey_command.h"
+#include "segment/segment_command.h"
+#include "simulate/simulate_command.h"
+#include "survey/survey_command.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "ascii_grid.h"
+#include "io/ascii_grid.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "cloud_evaluation.h"
+#include "evaluate/cloud_evaluation.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

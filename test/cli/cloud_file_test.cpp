@@ -1,4 +1,4 @@
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 
 #include <pcl/conversions.h>
 #include <pcl/io/pcd_io.h>

@@ -1,4 +1,4 @@
-#include "evaluation_pictures.h"
+#include "evaluate/evaluation_pictures.h"
 
 #include <algorithm>
 #include <map>

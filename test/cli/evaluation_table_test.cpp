@@ -1,11 +1,11 @@
-#include "evaluation_table.h"
+#include "evaluate/evaluation_table.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <sstream>
 
-#include "evaluation_files.h"
+#include "evaluate/evaluation_files.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

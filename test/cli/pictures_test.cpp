@@ -1,4 +1,4 @@
-#include "pictures.h"
+#include "drawing/pictures.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "colour_map.h"
+#include "drawing/colour_map.h"
+#include "drawing/spectrum_raster.h"
 #include "errors.h"
 #include "png.h"
-#include "spectrum_raster.h"
 #include "temporary_folder.h"
 
 namespace pcl_fft_ground::cli {

@@ -1,4 +1,4 @@
-#include "segment_command.h"
+#include "segment/segment_command.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "simulate_command.h"
+#include "simulate/simulate_command.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

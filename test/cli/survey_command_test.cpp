@@ -1,14 +1,14 @@
-#include "survey_command.h"
+#include "survey/survey_command.h"
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "align_command.h"
+#include "align/align_command.h"
 #include "command_fixture.h"
 #include "errors.h"
-#include "pose_table.h"
-#include "simulate_command.h"
+#include "io/pose_table.h"
+#include "simulate/simulate_command.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

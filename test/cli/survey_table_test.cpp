@@ -1,4 +1,4 @@
-#include "survey_table.h"
+#include "survey/survey_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "top_view.h"
+#include "drawing/top_view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "dct.h"
+#include "robust/dct.h"
 
 #include <gtest/gtest.h>
 

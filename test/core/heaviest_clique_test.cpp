@@ -1,4 +1,4 @@
-#include "heaviest_clique.h"
+#include "alignment/heaviest_clique.h"
 
 #include <gtest/gtest.h>
 

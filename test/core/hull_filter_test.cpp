@@ -1,4 +1,4 @@
-#include "hull_filter.h"
+#include "frame/hull_filter.h"
 
 #include <gtest/gtest.h>
 

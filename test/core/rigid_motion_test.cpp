@@ -1,4 +1,4 @@
-#include "rigid_motion.h"
+#include "alignment/rigid_motion.h"
 
 #include <gtest/gtest.h>
 

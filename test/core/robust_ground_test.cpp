@@ -8,10 +8,10 @@
 #include <random>
 
 #include "analytic_worlds.h"
-#include "dct.h"
 #include "pcl_fft_ground/core/butterworth.h"
 #include "random_points.h"
-#include "robust_fit.h"
+#include "robust/dct.h"
+#include "robust/robust_fit.h"
 
 namespace pcl_fft_ground::core {
 namespace {

@@ -1,0 +1,87 @@
+#include "io/output_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "errors.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& path, const std::string& reason) {
+  throw WorkError("cannot write '" + path + "': " + reason);
+}
+
+/// Refuses a target that a new file could not, or should not, take the place of (a folder, a device).
+void checkTarget(const std::string& path) {
+  std::error_code error;
+  const fs::path folder = fs::path(path).parent_path();
+  if (fs::path(path).filename().empty()) fail(path, "it names no file");
+  if (!folder.empty() && !fs::is_directory(folder, error)) fail(path, "its folder does not exist");
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) fail(path, "it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) fail(path, "it is not a regular file");
+}
+
+/// A path that is removed at the end of the scope, if it is still there.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target)
+      : path_(target.parent_path() /
+              ("." + target.filename().string() + "." + std::to_string(getpid()) + ".part")) {}
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+void writeWhole(const std::string& path, const std::function<void(const std::string& temporary)>& write) {
+  checkTarget(path);
+  const TemporaryFile temporary(path);
+  try {
+    write(temporary.path().string());
+  } catch (const std::exception& error) {
+    fail(path, error.what());
+  }
+  std::error_code error;
+  if (!fs::is_regular_file(temporary.path(), error)) fail(path, "the file was not made");
+  fs::rename(temporary.path(), path, error);
+  if (error) fail(path, error.message());
+}
+
+void writeText(const std::string& path, std::string_view content) {
+  writeWhole(path, [&](const std::string& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+    stream.close();
+    if (!stream) throw WorkError(errno != 0 ? std::strerror(errno) : "writing failed");
+  });
+}
+
+void makeDirectory(const std::string& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return;
+  const bool is_file = fs::exists(path, error);
+  if (!is_file) fs::create_directories(path, error);
+  if (is_file || error) {
+    throw WorkError("cannot make the folder '" + path + "': " + (is_file ? "it is a file" : error.message()));
+  }
+}
+
+}  // namespace pcl_fft_ground::cli

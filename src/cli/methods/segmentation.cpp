@@ -1,0 +1,92 @@
+#include "methods/segmentation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "errors.h"
+#include "pcl_fft_ground/core/far_points.h"
+#include "pcl_fft_ground/impl/indexed_points.hpp"
+#include "pcl_fft_ground/voxel_cluster_extraction.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+/// The highest point of each cell in the frame of the method, whatever cells it has itself.
+core::ElevationGrid elevationOf(const Cloud& cloud, const Segmenter& segmenter) {
+  const core::Points level = core::transformed(compactPoints(*cloud.points), segmenter.filter->getFrame());
+  return core::rasteriseHighest(level, core::gridAround(core::boundsOf(level), segmenter.cellSize()));
+}
+
+/// A ground surface at the cells of the elevation, whatever cells it has itself.
+core::GroundSurface atCells(const core::GroundSurface& surface, const core::GridGeometry& cells) {
+  const core::GridGeometry& own = surface.geometry;
+  if (own.rows == cells.rows && own.cols == cells.cols && own.cell_size == cells.cell_size) return surface;
+  core::GroundSurface result{surface.frame_from_input, cells, Eigen::ArrayXXd(cells.rows, cells.cols)};
+  for (Eigen::Index j = 0; j < cells.cols; ++j)
+    for (Eigen::Index i = 0; i < cells.rows; ++i) {
+      const Eigen::Vector2d place(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
+      const Eigen::Vector2d centre = cells.origin + cells.cell_size * place;
+      result.height(i, j) = surface.heightAt(centre.x(), centre.y());
+    }
+  return result;
+}
+
+}  // namespace
+
+void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& points) {
+  const auto finite = [](const Point& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  };
+  if (std::none_of(points.begin(), points.end(), finite))
+    throw WorkError(path + ": none of its " + std::to_string(points.size()) +
+                    " points is finite; at least one has to be");
+}
+
+core::Points compactPoints(const pcl::PointCloud<Point>& cloud) {
+  const impl::IndexedPoints<Point> all(cloud, nullptr);
+  core::Points points = all.finitePoints();
+  const std::vector<Eigen::Index> far = core::findFarPoints(points, core::summarise(points));
+  for (auto n = far.rbegin(); n != far.rend(); ++n) {
+    points.col(*n) = points.rightCols<1>();
+    points.conservativeResize(Eigen::NoChange, points.cols() - 1);
+  }
+  return points;
+}
+
+core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects) {
+  core::Labels labels(count, core::Label::NEITHER);
+  for (const pcl::index_t n : ground.indices) labels[static_cast<std::size_t>(n)] = core::Label::GROUND;
+  for (const pcl::index_t n : objects.indices) labels[static_cast<std::size_t>(n)] = core::Label::OBJECT;
+  return labels;
+}
+
+Segmentation segmentCloud(const std::string& path, const Cloud& cloud, Segmenter& segmenter) {
+  requireFinitePoint(path, *cloud.points);
+  Segmentation result;
+  segmenter.filter->setInputCloud(cloud.points);
+  segmenter.filter->segment(result.ground, result.objects);
+  if (!segmenter.filter->getError().empty()) throw WorkError(path + ": " + segmenter.filter->getError());
+  result.labels = labelsOf(cloud.points->size(), result.ground, result.objects);
+  result.elevation = elevationOf(cloud, segmenter);
+  result.surface = atCells(segmenter.filter->getGroundSurface(), result.elevation.geometry);
+  if (!cloud.labels.empty()) result.confusion = core::compare(cloud.labels, result.labels);
+  return result;
+}
+
+void clusterObjects(const Cloud& cloud, const ClusterParameters& parameters, Segmentation& segmentation) {
+  VoxelClusterExtraction<Point> extraction;
+  extraction.setInputCloud(cloud.points);
+  extraction.setIndices(pcl::IndicesConstPtr(new pcl::Indices(segmentation.objects.indices)));
+  extraction.setLeafSize(parameters.leaf_size);
+  extraction.setMinClusterSize(static_cast<pcl::uindex_t>(parameters.min_cluster_size));
+  extraction.setMaxClusterSize(static_cast<pcl::uindex_t>(
+      std::min<std::size_t>(parameters.max_cluster_size, std::numeric_limits<pcl::uindex_t>::max())));
+  extraction.extract(segmentation.clusters);
+
+  segmentation.segments.assign(cloud.points->size(), 0);
+  for (std::size_t k = 0; k < segmentation.clusters.size(); ++k)
+    for (const pcl::index_t n : segmentation.clusters[k].indices)
+      segmentation.segments[static_cast<std::size_t>(n)] = static_cast<std::int32_t>(k + 1);
+}
+
+}  // namespace pcl_fft_ground::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+
+#include "methods/segmentation.h"
+#include "progress.h"
+
+namespace pcl_fft_ground::cli {
+
+/// The content of report.json. Numbers that do not exist (a rate without objects) are null.
+nlohmann::ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segmenter& segmenter,
+                                  const Segmentation& segmentation, nlohmann::ordered_json parameters,
+                                  const std::vector<std::string>& warnings, const Progress& progress);
+
+/// A report as JSON text, a line to each value. A file name that is no UTF-8 gets replacement characters.
+std::string asText(const nlohmann::ordered_json& report);
+
+/// The few lines that a person wants to read of a report.
+void printSummary(std::ostream& out, const nlohmann::ordered_json& report);
+
+}  // namespace pcl_fft_ground::cli

@@ -1,0 +1,103 @@
+#include "survey/survey_request.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "command_line.h"
+#include "errors.h"
+#include "survey/survey_folder.h"
+#include "survey/survey_pair.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+namespace po = boost::program_options;
+using nlohmann::ordered_json;
+
+std::vector<std::string> chosenMethods(const po::variables_map& values) {
+  std::vector<std::string> names = methodNames();
+  names.push_back(DENSE_ICP);
+  names.push_back(std::string("fft") + WITH_FALLBACK);
+  if (values.count("methods") == 0) return names;
+  names.clear();
+  std::istringstream list(values["methods"].as<std::string>());
+  for (std::string name; std::getline(list, name, ',');)
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  if (names.empty()) throw UsageError("--methods: allowed are names of methods, parted by commas");
+  return names;
+}
+
+double positive(const po::variables_map& values, const char* option) {
+  const auto value = values[option].as<double>();
+  if (value > 0 && std::isfinite(value)) return value;
+  std::ostringstream message;
+  message << "--" << option << " " << value << ": allowed is a finite number above 0";
+  throw UsageError(message.str());
+}
+
+std::string required(const po::variables_map& values, const char* option, const char* what) {
+  if (values.count(option) == 0 || values[option].as<std::string>().empty())
+    throw UsageError(std::string("survey: no ") + what);
+  return values[option].as<std::string>();
+}
+
+/// All that the results depend on: other parameters make other results.
+ordered_json describeRequest(const SurveyRequest& request) {
+  ordered_json parameters{{"folder", request.folder}, {"alignment", request.settings.described}};
+  for (const Segmenter& segmenter : request.segmenters)
+    parameters["segmentation"][segmenter.method] = segmenter.parameters;
+  parameters["submaps"] = fingerprintOf(request.folder);
+  return parameters;
+}
+
+/// A segmenter for each method that needs one.
+std::vector<Segmenter> makeSegmenters(const std::vector<std::string>& methods,
+                                      const po::variables_map& values, Version version) {
+  std::vector<Segmenter> segmenters;
+  for (const std::string& method : methods) {
+    const std::string name = segmenterOf(method);
+    const bool is_there = std::any_of(segmenters.begin(), segmenters.end(),
+                                      [&](const Segmenter& segmenter) { return segmenter.method == name; });
+    if (name != DENSE_ICP && !is_there) segmenters.push_back(makeAlignmentSegmenter(name, values, version));
+  }
+  return segmenters;
+}
+
+}  // namespace
+
+po::options_description surveyOptions() {
+  const NavigationTrust trust;
+  po::options_description options("General", HELP_WIDTH, HELP_TEXT_WIDTH);
+  auto add = options.add_options();
+  add("output,o", po::value<std::string>()->value_name("DIR"),
+      "directory for the results; other files in it stay");
+  add("methods", po::value<std::string>()->value_name("NAMES"),
+      "methods, parted by commas; the last one but dense-icp makes the map "
+      "(naive,planar,grid,graph-cut,fft-lowpass,fft,dense-icp,fft+dense)");
+  add("navigation-sigma", po::value<double>()->default_value(trust.horizontal, "0.1")->value_name("M"),
+      "standard deviation of the places by navigation [m], above 0");
+  add("heading-sigma", po::value<double>()->default_value(trust.heading, "2")->value_name("DEG"),
+      "standard deviation of the headings by navigation [degrees], above 0");
+  add("json", po::bool_switch(), "print survey.json");
+  add("quiet", po::bool_switch(), "print nothing but errors");
+  add("help,h", po::bool_switch(), "show this text");
+  return options;
+}
+
+SurveyRequest parseSurveyRequest(const po::variables_map& values) {
+  SurveyRequest request;
+  request.folder = required(values, "folder", "folder of sub-maps given");
+  request.directory = required(values, "output", "output given: name a folder by -o DIR");
+  request.methods = chosenMethods(values);
+  request.settings = alignmentSettings(values);
+  request.trust = {positive(values, "navigation-sigma"), positive(values, "heading-sigma")};
+  request.mapping = request.methods.front();
+  for (const std::string& method : request.methods)
+    if (method != DENSE_ICP) request.mapping = method;
+  request.segmenters = makeSegmenters(request.methods, values, request.settings.version);
+  request.parameters = describeRequest(request);
+  return request;
+}
+
+}  // namespace pcl_fft_ground::cli

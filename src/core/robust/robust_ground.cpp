@@ -1,0 +1,120 @@
+#include "pcl_fft_ground/core/robust_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "robust/robust_choices.h"
+#include "robust/robust_openings.h"
+#include "robust/robust_sample.h"
+#include "robust/robust_surface.h"
+
+namespace pcl_fft_ground::core {
+namespace {
+
+/// Coarse to fine from the lower envelope: the largest object first, then shorter wavelengths.
+std::vector<double> growGround(RobustSurface& surface, double coarsest, double finest) {
+  const double octaves = std::round(std::log2(coarsest / finest));
+  const double ratio = std::pow(coarsest / finest, 1 / std::max(octaves, 1.0));
+  surface.startBelowObjects(coarsest);
+  std::vector<double> wavelengths{coarsest};
+  surface.refine(coarsest);
+  while (wavelengths.back() > finest) {
+    const double shorter = wavelengths.back() / ratio;
+    wavelengths.push_back(shorter < 1.001 * finest ? finest : shorter);
+    surface.refine(wavelengths.back());
+  }
+  return wavelengths;
+}
+
+/// From the cells that progressive openings leave, at the finest wavelength alone: where land breaks, a
+/// surface of a longer one loses the terraces.
+std::vector<double> openGround(RobustSurface& surface, const GridGeometry& cells,
+                               const OpeningParameters& opening, double finest) {
+  surface.startFrom(openedGround(surface.points(), cells, opening), finest);
+  surface.refine(finest);
+  return {finest};
+}
+
+std::vector<double> findGround(RobustSurface& surface, const RobustPlan& plan,
+                               const std::optional<double>& max_slope) {
+  constexpr double LEAST_HEIGHT = 0.01;  // of an object, as a share of the largest
+  const double size = plan.max_object_size, finest = plan.finest_wavelength;
+  return max_slope ? openGround(surface, plan.cells, {size, *max_slope, LEAST_HEIGHT * size}, finest)
+                   : growGround(surface, std::max(size, finest), finest);
+}
+
+/// Fits the surface to the ground points themselves: a cell may hold both ground and the foot of an object,
+/// and its lowest points lie below the middle of the noise.
+/// \return the spread of the points around it
+double fitGroundPoints(RobustSurface& surface, const SortedPoints& points) {
+  constexpr double BAND = 3;  // scales
+  constexpr int ROUNDS = 2;
+  Spread spread = surface.spread();
+  double low = spread.centre - 3 * BAND * spread.scale;  // the lowest points stood for their cells
+  for (int n = 0; n < ROUNDS; ++n) {
+    const double high = spread.centre + BAND * spread.scale;
+    const CellPoints ground = meanGroundPoints(points, {surface.grid(), surface.heights(), low, high});
+    if (!ground.positions.empty()) surface.fitTo(ground);
+    const double reach = 2 * BAND * spread.scale;
+    spread = spreadAround(points, {surface.grid(), surface.heights(), -reach, reach});
+    low = spread.centre - BAND * spread.scale;
+  }
+  return spread.scale;
+}
+
+/// Distance [m] of every cell from the nearest one that holds ground.
+Eigen::ArrayXXd distanceFromGround(const CellPoints& ground, const GridGeometry& cells) {
+  Mask observed = Mask::Constant(cells.rows, cells.cols, false);
+  for (const Eigen::Index cell : ground.cells) observed.data()[cell] = true;
+  Eigen::ArrayXXd nearest(cells.rows, cells.cols);
+  for (Eigen::Index cell = 0; cell < nearest.size(); ++cell) nearest.data()[cell] = static_cast<double>(cell);
+  fillEmptyCells(nearest, observed);
+  Eigen::ArrayXXd distance(cells.rows, cells.cols);
+  for (Eigen::Index j = 0; j < cells.cols; ++j)
+    for (Eigen::Index i = 0; i < cells.rows; ++i) {
+      const auto cell = static_cast<Eigen::Index>(nearest(i, j));
+      distance(i, j) =
+          std::hypot(static_cast<double>(cell % cells.rows - i), static_cast<double>(cell / cells.rows - j));
+    }
+  return cells.cell_size * distance;
+}
+
+void describeSurface(const RobustSurface& surface, const RobustPlan& plan, RobustGround& ground) {
+  ground.surface.geometry = plan.cells;
+  ground.surface.height = resampled(surface.heights(), surface.grid(), plan.cells);
+  const Eigen::ArrayXXd distance = distanceFromGround(surface.points(), plan.cells);
+  ground.surface.supported = distance <= plan.finest_wavelength;
+  ground.surface.uncertainty = (std::pow(ground.scale, 2) + (plan.slope * distance).square()).sqrt();
+}
+
+}  // namespace
+
+RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
+                                  const RobustParameters& parameters) {
+  constexpr Eigen::Index POINTS_PER_CELL = 10;              // as many tell where its ground lies
+  constexpr double LEAST_SCALE = 0.0015, PRECISION = 1e-4;  // as shares of the largest object
+  RobustGround ground;
+  ground.surface.frame_from_input = frame_from_input;
+  if (points.cols() == 0) return ground;
+  const Bounds bounds = boundsOf(points);
+  const RobustPlan plan = planRobustGround(parameters, bounds, points.cols(), ground.choices);
+  ground.extent = plan.extent;
+  ground.max_object_size = plan.max_object_size;
+  ground.finest_wavelength = plan.finest_wavelength;
+
+  const Points sample = sampleOf(points, POINTS_PER_CELL * plan.cells.rows * plan.cells.cols);
+  const SortedPoints sorted(sample, bounds, plan.cells);
+  CellPoints cell_points = representativePoints(sorted, plan.statistic);
+  ground.elevation = elevationOf(cell_points, plan.cells);
+  RobustSurface surface(std::move(cell_points), plan.cells,
+                        {plan.finest_wavelength, parameters.filter_order, parameters.passband_ripple},
+                        {LEAST_SCALE * plan.max_object_size, plan.slope}, PRECISION * plan.max_object_size);
+  ground.wavelengths = findGround(surface, plan, parameters.max_slope);
+  ground.scale = fitGroundPoints(surface, sorted);
+  describeSurface(surface, plan, ground);
+  chooseTolerances(parameters, points.cols(), ground);
+  return ground;
+}
+
+}  // namespace pcl_fft_ground::core

@@ -1,0 +1,39 @@
+#include "robust/robust_sample.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace pcl_fft_ground::core {
+namespace {
+
+/// Spreads the bits of the coordinates over 32.
+std::uint32_t hashOf(const float* coordinates) {
+  std::uint32_t bits[3];
+  std::memcpy(bits, coordinates, sizeof bits);
+  std::uint32_t hash = bits[0] * 0x9e3779b1U ^ bits[1] * 0x85ebca6bU ^ bits[2] * 0xc2b2ae35U;
+  hash ^= hash >> 15;
+  hash *= 0x2c1b3c6dU;
+  return hash ^ (hash >> 13);
+}
+
+}  // namespace
+
+Points sampleOf(const PointsView& points, Eigen::Index wanted) {
+  if (points.cols() <= 2 * wanted) return points;
+  const double share = static_cast<double>(wanted) / static_cast<double>(points.cols());
+  const auto threshold = static_cast<std::uint32_t>(share * 4294967295.0);
+  std::vector<std::uint32_t> chosen(static_cast<std::size_t>(points.cols()));
+  std::size_t count = 0;
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    chosen[count] = static_cast<std::uint32_t>(n);
+    count += hashOf(points.data() + 3 * n) < threshold ? 1 : 0;
+  }
+  Points sample(3, count);
+  for (std::size_t k = 0; k < count; ++k)
+    sample.col(static_cast<Eigen::Index>(k)) = points.col(static_cast<Eigen::Index>(chosen[k]));
+  return sample;
+}
+
+}  // namespace pcl_fft_ground::core
