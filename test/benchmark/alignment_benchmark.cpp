@@ -1,0 +1,185 @@
+// How many overlapping scans of simulated surveys are aligned, how well, and in what time beside the k-d tree
+// that pcl::Registration would build: the shares pooled over several sites, with their lower 90 % bounds.
+
+#include <pcl/kdtree/kdtree_flann.h>
+#include <pcl/point_types.h>
+
+#include <boost/program_options.hpp>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "pcl_fft_ground/core/simulation.h"
+#include "survey/survey_table.h"
+#include "survey_trials.h"
+
+namespace {
+
+namespace core = pcl_fft_ground::core;
+namespace cli = pcl_fft_ground::cli;
+namespace po = boost::program_options;
+
+struct Request {
+  unsigned seeds = 10, first_seed = 101;
+  std::size_t points = 200000;
+  double least_overlap = 0.3;
+  bool without_fallback = false;
+};
+
+/// CPU time of building the tree of 600,000 points, time and again: the machine's speed may change.
+class TreeBuild {
+ public:
+  TreeBuild() : cloud_(new pcl::PointCloud<pcl::PointXYZ>) {
+    const core::SimulatedScan scan = core::simulateScan({});
+    for (Eigen::Index n = 0; n < scan.points.cols(); ++n)
+      cloud_->push_back({scan.points(0, n), scan.points(1, n), scan.points(2, n)});
+  }
+
+  double seconds() const {
+    const std::clock_t begun = std::clock();
+    pcl::KdTreeFLANN<pcl::PointXYZ> tree;
+    tree.setInputCloud(cloud_);
+    return static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+  }
+
+ private:
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud_;
+};
+
+/// A line of the table.
+struct Row {
+  std::string name;
+  core::SearchMode mode = core::SearchMode::NAVIGATION;
+  TrialResults results = {};
+  std::vector<double> tree_seconds = {};
+};
+
+void runAll(const std::vector<Trial>& trials, const Request& request, const TreeBuild& tree, Row& row) {
+  constexpr std::size_t TRIALS_PER_TREE = 8;
+  core::AlignmentParameters parameters;
+  parameters.gates = core::gatesOf(row.mode);
+  if (request.without_fallback) parameters.fallback = core::Fallback::NONE;
+  for (const Trial& trial : trials) {
+    if (row.results.trials % TRIALS_PER_TREE == 0) row.tree_seconds.push_back(tree.seconds());
+    run(trial, parameters, row.results);
+  }
+}
+
+void print(const Row& row) {
+  const TrialResults& r = row.results;
+  const auto millimetres = [&](double share) { return 1e3 * cli::quantileOf(r.errors, share).value_or(0); };
+  const double ratio =
+      cli::quantileOf(r.seconds, 0.5).value_or(0) / cli::quantileOf(row.tree_seconds, 0.5).value_or(1);
+  const double share = r.trials == 0 ? 0 : static_cast<double>(r.accepted) / static_cast<double>(r.trials);
+  std::printf("%-32s %5zu %7zu %5zu %6.1f %6.1f %5zu %7.2f %7.2f %9.2f\n", row.name.c_str(), r.trials,
+              r.accepted, r.dense, 100 * share, 100 * cli::lowerBound(r.accepted, r.trials), r.wrong,
+              millimetres(0.5), millimetres(0.9), ratio);
+  std::fflush(stdout);
+}
+
+std::vector<TrialSurvey> makeSurveys(core::SceneKind site, double drift, const Request& request) {
+  std::vector<TrialSurvey> surveys;
+  for (unsigned n = 0; n < request.seeds; ++n) {
+    core::SurveyParameters parameters;
+    parameters.site = site;
+    parameters.seed = request.first_seed + n;
+    parameters.points = request.points;
+    parameters.drift = drift;
+    surveys.push_back(makeSurvey(parameters));
+    std::cerr << "made survey " << n + 1 << " of " << request.seeds << "\n";
+  }
+  return surveys;
+}
+
+std::vector<Trial> thinned(std::vector<Trial> trials, const TrialSurvey& survey) {
+  for (Trial& trial : trials)
+    for (const TrialScan& scan : survey)
+      if (trial.moving == &scan.segments) {
+        trial.moving = &scan.thinned;
+        break;
+      }
+  return trials;
+}
+
+/// All rows of one site.
+void benchmarkSite(const std::string& name, const std::vector<TrialSurvey>& surveys, const Request& request,
+                   const TreeBuild& tree) {
+  Row navigation{name}, thin{name + ", one thinned to 10 %"};
+  Row shifted{name + ", 2 m off", core::SearchMode::WIDE};
+  Row turned{name + ", 1 m and 20 deg off", core::SearchMode::WIDE};
+  for (std::size_t n = 0; n < surveys.size(); ++n) {
+    const std::vector<Trial> pairs = overlappingPairs(surveys[n], request.least_overlap);
+    const auto seed = static_cast<unsigned>(n + 1);
+    runAll(pairs, request, tree, navigation);
+    runAll(thinned(pairs, surveys[n]), request, tree, thin);
+    runAll(misguided(pairs, {2, 0}, seed), request, tree, shifted);
+    runAll(misguided(pairs, {1, 20}, seed), request, tree, turned);
+  }
+  for (const Row* row : {&navigation, &thin, &shifted, &turned}) print(*row);
+}
+
+void benchmarkHardSite(const std::string& name, core::SceneKind site, const Request& request,
+                       const TreeBuild& tree) {
+  constexpr double DRIFT = 0.01;
+  Row row{name + ", hard"};
+  for (const TrialSurvey& survey : makeSurveys(site, DRIFT, request))
+    runAll(overlappingPairs(survey, request.least_overlap), request, tree, row);
+  print(row);
+}
+
+void benchmarkDifferentPlaces(const std::string& name, const std::vector<TrialSurvey>& moving,
+                              const std::vector<TrialSurvey>& reference, const Request& request,
+                              const TreeBuild& tree) {
+  Row row{name};
+  for (std::size_t n = 0; n < moving.size(); ++n)
+    runAll(differentPlaces(moving[n], reference[(n + 1) % reference.size()], static_cast<unsigned>(n + 1)),
+           request, tree, row);
+  print(row);
+}
+
+void benchmarkAll(const Request& request) {
+  const TreeBuild tree;
+  std::printf("%-32s %5s %7s %5s %6s %6s %5s %7s %7s %9s\n", "", "pairs", "aligned", "dense", "%", ">= %",
+              "wrong", "median", "90 %", "time/tree");
+  const std::vector<TrialSurvey> wreck = makeSurveys(core::SceneKind::WRECK, 0, request);
+  benchmarkSite("wreck", wreck, request, tree);
+  benchmarkHardSite("wreck", core::SceneKind::WRECK, request, tree);
+  const std::vector<TrialSurvey> pipes = makeSurveys(core::SceneKind::PIPES, 0, request);
+  benchmarkSite("pipes", pipes, request, tree);
+  benchmarkHardSite("pipes", core::SceneKind::PIPES, request, tree);
+  benchmarkDifferentPlaces("different wrecks", wreck, wreck, request, tree);
+  benchmarkDifferentPlaces("different pipes", pipes, pipes, request, tree);
+  benchmarkDifferentPlaces("pipes on wrecks", pipes, wreck, request, tree);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Request request;
+  po::options_description options("alignment_benchmark: alignment of simulated surveys, pooled over sites");
+  auto add = options.add_options();
+  add("seeds", po::value(&request.seeds)->default_value(request.seeds), "sites of each kind, 2 or more");
+  add("first-seed", po::value(&request.first_seed)->default_value(request.first_seed),
+      "seed of the first site");
+  add("points", po::value(&request.points)->default_value(request.points), "points of each sub-map");
+  add("least-overlap", po::value(&request.least_overlap)->default_value(request.least_overlap, "0.3"),
+      "pairs of which both see at least this share of the smaller sub-map, in (0, 1]");
+  add("segments-only", po::bool_switch(&request.without_fallback), "without the dense fallback");
+  add("help", "show this text");
+  po::variables_map values;
+  po::store(po::parse_command_line(argc, argv, options), values);
+  po::notify(values);
+  if (values.count("help") != 0) {
+    std::cout << options
+              << "Times are medians of CPU time, over that of building pcl::KdTreeFLANN of 600,000 points;\n"
+                 "errors are in mm, of the aligned pairs, amid the overlap.\n";
+    return 0;
+  }
+  benchmarkAll(request);
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << "alignment_benchmark: " << error.what() << "\n";
+  return 2;
+}
