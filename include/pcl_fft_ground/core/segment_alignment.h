@@ -61,6 +61,10 @@ struct AlignmentParameters {
 struct SegmentMatch {
   std::size_t moving = 0;     ///< index into the segments of the moving scan
   std::size_t reference = 0;  ///< index into the segments of the reference
+
+  bool operator==(const SegmentMatch& other) const {
+    return moving == other.moving && reference == other.reference;
+  }
 };
 
 /// How a transform was found.

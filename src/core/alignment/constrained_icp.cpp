@@ -6,6 +6,7 @@ namespace pcl_fft_ground::core {
 namespace {
 
 constexpr Eigen::Index SAMPLE = 250;      // points of a segment that take part
+constexpr Eigen::Index ROUGHLY = 4;       // one in so many of them suffices to come near
 constexpr double FINEST_GATE = 1.5;       // [voxels]
 constexpr double PLANE_GATE = 3;          // at the start of point-to-plane [voxels]
 constexpr double ROUGHLY_SETTLED = 0.01;  // a smaller step ends point-to-point at the finest gate [voxels]
@@ -47,13 +48,13 @@ std::optional<Partners> ConstrainedIcp::partnersOf(const Eigen::Vector3d& point,
   return best;
 }
 
-FindPartners ConstrainedIcp::partnersIn(const std::vector<SegmentMatch>& matches) const {
+FindPartners ConstrainedIcp::partnersIn(const std::vector<SegmentMatch>& matches, Eigen::Index one_in) const {
   std::vector<std::vector<std::size_t>> segments_of(samples_.size());
   for (const SegmentMatch& match : matches) segments_of[match.moving].push_back(match.reference);
-  return [this, segments_of](const Eigen::Isometry3d& correction, double gate) {
+  return [this, segments_of, one_in](const Eigen::Isometry3d& correction, double gate) {
     std::vector<Partners> found;
     for (std::size_t i = 0; i < samples_.size(); ++i)
-      for (Eigen::Index n = 0; n < samples_[i].cols() && !segments_of[i].empty(); ++n) {
+      for (Eigen::Index n = 0; n < samples_[i].cols() && !segments_of[i].empty(); n += one_in) {
         const Eigen::Vector3d point = correction * samples_[i].col(n).cast<double>();
         if (!pair_.referenceSees(point)) continue;
         const std::optional<Partners> partners = partnersOf(point, segments_of[i], gate);
@@ -66,13 +67,13 @@ FindPartners ConstrainedIcp::partnersIn(const std::vector<SegmentMatch>& matches
 Eigen::Isometry3d ConstrainedIcp::approach(const std::vector<SegmentMatch>& matches,
                                            const Eigen::Isometry3d& start, double gate) const {
   const double voxel = pair_.voxelSize();
-  return iterateIcp(start, {gate * voxel, FINEST_GATE * voxel, ROUGHLY_SETTLED * voxel}, partnersIn(matches),
-                    stepToPoints);
+  return iterateIcp(start, {gate * voxel, FINEST_GATE * voxel, ROUGHLY_SETTLED * voxel},
+                    partnersIn(matches, ROUGHLY), stepToPoints);
 }
 
 IcpResult ConstrainedIcp::refine(const std::vector<SegmentMatch>& matches, const Eigen::Isometry3d& start) {
   const double voxel = pair_.voxelSize();
-  const FindPartners find = partnersIn(matches);
+  const FindPartners find = partnersIn(matches, 1);
   const Eigen::Isometry3d correction =
       iterateIcp(start, {PLANE_GATE * voxel, FINEST_GATE * voxel, SETTLED * voxel}, find,
                  [this](const std::vector<Partners>& partners, const Eigen::Vector3d& centre) {

@@ -23,7 +23,8 @@ class ConstrainedIcp {
   IcpResult refine(const std::vector<SegmentMatch>& matches, const Eigen::Isometry3d& start);
 
  private:
-  FindPartners partnersIn(const std::vector<SegmentMatch>& matches) const;
+  /// Partners of one in so many of the samples' points.
+  FindPartners partnersIn(const std::vector<SegmentMatch>& matches, Eigen::Index one_in) const;
   std::optional<Partners> partnersOf(const Eigen::Vector3d& point, const std::vector<std::size_t>& segments,
                                      double gate) const;
 

@@ -14,6 +14,8 @@ constexpr int MAX_ITERATIONS = 12;
 constexpr double LEAST_COVERED = 0.3;
 constexpr double LEAST_SCALE = 0.5;  // of the robust weights [voxels]
 constexpr double SETTLED = 0.05;     // a smaller step ends the iteration [voxels]
+constexpr Eigen::Index ROUGHLY = 4;  // one in so many points tells whether two segments are worth all of them
+constexpr double HOPELESS = 1.5;     // of the largest distance: by one in four points unlike
 
 /// A point of the moving segment, corrected by the current transform, and its partner in the reference.
 struct Partners {
@@ -38,13 +40,13 @@ double meanDistance(const std::vector<Partners>& partners, std::size_t first, st
   return sum / static_cast<double>(last - first);
 }
 
-/// Partners of the moving segment's points in the reference, then of the reference's points in the moving
-/// one.
+/// Partners in the reference of one in `step` of the moving segment's points, then the other way round.
 Correspondences findPartners(const ScanPair& pair, const PlacedSegment& moving,
-                             const PlacedSegment& reference, const Eigen::Isometry3d& correction) {
+                             const PlacedSegment& reference, const Eigen::Isometry3d& correction,
+                             Eigen::Index step) {
   constexpr float ANYWHERE = 1e6F;
   Correspondences result;
-  for (Eigen::Index n = 0; n < moving.sample.cols(); ++n) {
+  for (Eigen::Index n = 0; n < moving.sample.cols(); n += step) {
     const Eigen::Vector3d point = correction * moving.sample.col(n).cast<double>();
     if (!pair.referenceSees(point)) continue;
     const Neighbour nearest = reference.search->nearest(point.cast<float>(), ANYWHERE);
@@ -53,7 +55,7 @@ Correspondences findPartners(const ScanPair& pair, const PlacedSegment& moving,
   }
   const std::size_t forward = result.partners.size();
   const Eigen::Isometry3d inverse = correction.inverse();
-  for (Eigen::Index n = 0; n < reference.sample.cols(); ++n) {
+  for (Eigen::Index n = 0; n < reference.sample.cols(); n += step) {
     const Eigen::Vector3d point = reference.sample.col(n).cast<double>();
     const Eigen::Vector3d uncorrected = inverse * point;
     if (!pair.movingSees(uncorrected)) continue;
@@ -62,8 +64,8 @@ Correspondences findPartners(const ScanPair& pair, const PlacedSegment& moving,
                                std::sqrt(static_cast<double>(nearest.squared_distance))});
   }
   const std::size_t backward = result.partners.size() - forward;
-  result.covered =
-      std::min(shareOf(forward, moving.sample.cols()), shareOf(backward, reference.sample.cols()));
+  result.covered = std::min(shareOf(forward, (moving.sample.cols() + step - 1) / step),
+                            shareOf(backward, (reference.sample.cols() + step - 1) / step));
   if (forward > 0 && backward > 0)
     result.shape_distance = 0.5 * (meanDistance(result.partners, 0, forward) +
                                    meanDistance(result.partners, forward, result.partners.size()));
@@ -91,22 +93,32 @@ Eigen::Isometry3d stepOf(const std::vector<Partners>& partners, const Eigen::Vec
   return Eigen::Translation3d(about) * fit.solve() * Eigen::Translation3d(-about);
 }
 
-}  // namespace
-
-std::optional<LocalAlignment> alignLocally(const ScanPair& pair, const PlacedSegment& moving,
-                                           const PlacedSegment& reference, const Eigen::Isometry3d& start) {
+/// Moves the segment on to its partners until it stays or too little of it is covered.
+LocalAlignment iterate(const ScanPair& pair, const PlacedSegment& moving, const PlacedSegment& reference,
+                       const Eigen::Isometry3d& start, Eigen::Index one_in) {
   Eigen::Isometry3d correction = start;
-  Correspondences found = findPartners(pair, moving, reference, correction);
+  Correspondences found = findPartners(pair, moving, reference, correction, one_in);
   for (int iteration = 0; iteration < MAX_ITERATIONS && found.covered >= LEAST_COVERED; ++iteration) {
     const Eigen::Isometry3d step = stepOf(found.partners, reference.centroid, pair.voxelSize());
     correction = step * correction;
-    found = findPartners(pair, moving, reference, correction);
+    found = findPartners(pair, moving, reference, correction, one_in);
     const double moved = (step * reference.centroid - reference.centroid).norm() +
                          std::abs(yawOf(step)) * reference.extents.norm();
     if (moved < SETTLED * pair.voxelSize()) break;
   }
-  if (found.covered < LEAST_COVERED) return std::nullopt;
-  return LocalAlignment{correction, found.shape_distance, found.covered};
+  return {correction, found.shape_distance, found.covered};
+}
+
+}  // namespace
+
+std::optional<LocalAlignment> alignLocally(const ScanPair& pair, const PlacedSegment& moving,
+                                           const PlacedSegment& reference, const Eigen::Isometry3d& start,
+                                           double max_distance) {
+  const LocalAlignment rough = iterate(pair, moving, reference, start, ROUGHLY);
+  if (rough.covered < LEAST_COVERED || rough.shape_distance > HOPELESS * max_distance) return std::nullopt;
+  const LocalAlignment fine = iterate(pair, moving, reference, rough.correction, 1);
+  if (fine.covered < LEAST_COVERED || fine.shape_distance > max_distance) return std::nullopt;
+  return fine;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -16,9 +16,11 @@ struct LocalAlignment {
 
 /** ICP of two segments by themselves: yaw and shift, both ways, only where the other scan has looked.
  * \param start correction to begin with
- * \return nothing if too little of either has been seen by the other scan
+ * \param max_distance largest mean distance of segments that are alike [m]
+ * \return nothing if they are not alike or too little of either has been seen by the other scan
  */
 std::optional<LocalAlignment> alignLocally(const ScanPair& pair, const PlacedSegment& moving,
-                                           const PlacedSegment& reference, const Eigen::Isometry3d& start);
+                                           const PlacedSegment& reference, const Eigen::Isometry3d& start,
+                                           double max_distance);
 
 }  // namespace pcl_fft_ground::core

@@ -55,7 +55,9 @@ Solution solveFrom(const ScanPair& pair, const Eigen::Isometry3d& start, Constra
   Solution solution;
   solution.icp.correction = start;
   for (int round = 0; round < ASSOCIATIONS; ++round) {
-    solution.matches = associateSegments(pair, solution.icp.correction);
+    std::vector<SegmentMatch> matches = associateSegments(pair, solution.icp.correction);
+    if (matches == solution.matches) break;
+    solution.matches = std::move(matches);
     if (solution.matches.size() < pair.parameters().min_matches) break;
     const Eigen::Isometry3d again = icp.approach(solution.matches, solution.icp.correction, REPEATED_GATE);
     solution.icp = icp.refine(solution.matches, again);

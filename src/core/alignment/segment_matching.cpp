@@ -46,11 +46,12 @@ bool areAlike(const PlacedSegment& a, const PlacedSegment& b) {
 
 /// The better of the local alignments from the centroids and, where these mislead, from the initial guess.
 std::optional<LocalAlignment> bestLocalAlignment(const ScanPair& pair, const PlacedSegment& a,
-                                                 const PlacedSegment& b) {
+                                                 const PlacedSegment& b, double max_distance) {
   const Eigen::Isometry3d by_centroids(Eigen::Translation3d(b.centroid - a.centroid));
-  const std::optional<LocalAlignment> first = alignLocally(pair, a, b, by_centroids);
+  const std::optional<LocalAlignment> first = alignLocally(pair, a, b, by_centroids, max_distance);
   if (!a.at_border && !b.at_border) return first;
-  const std::optional<LocalAlignment> second = alignLocally(pair, a, b, Eigen::Isometry3d::Identity());
+  const std::optional<LocalAlignment> second =
+      alignLocally(pair, a, b, Eigen::Isometry3d::Identity(), max_distance);
   if (!first || !second) return first ? first : second;
   return second->shape_distance < first->shape_distance ? second : first;
 }
@@ -59,13 +60,12 @@ std::optional<CandidateMatch> localMatch(const ScanPair& pair, const SegmentMatc
   const PlacedSegment& a = pair.moving()[segments.moving];
   const PlacedSegment& b = pair.reference()[segments.reference];
   if (!areAlike(a, b)) return std::nullopt;
-  const std::optional<LocalAlignment> local = bestLocalAlignment(pair, a, b);
-  if (!local) return std::nullopt;
   const double voxel = pair.voxelSize();
   const double extent = std::min(a.extents.maxCoeff(), b.extents.maxCoeff());
   const double limit =
       std::min(LARGEST_DISTANCE * voxel, DISTANCE_PER_EXTENT * extent + LEAST_DISTANCE * voxel);
-  if (local->shape_distance > limit) return std::nullopt;
+  const std::optional<LocalAlignment> local = bestLocalAlignment(pair, a, b, limit);
+  if (!local) return std::nullopt;
   const double unlikeness = local->shape_distance / (0.6 * limit);
   const double weight = std::min(sizeOf(a), sizeOf(b)) * std::exp(-0.5 * unlikeness * unlikeness) *
                         std::min(1.0, local->covered + 0.3);
