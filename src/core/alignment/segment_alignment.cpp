@@ -71,8 +71,7 @@ Solution solveFrom(const ScanPair& pair, const Eigen::Isometry3d& start, Constra
 Solution solve(const ScanPair& pair, const std::vector<CandidateMatch>& hypothesis, ConstrainedIcp& icp,
                const AlignmentScore& score) {
   const std::vector<SegmentMatch> matches = segmentsOf(hypothesis);
-  const Eigen::Isometry3d approached = icp.approach(matches, fitMatches(hypothesis), FIRST_GATE);
-  return solveFrom(pair, icp.refine(matches, approached).correction, icp, score);
+  return solveFrom(pair, icp.approach(matches, fitMatches(hypothesis), FIRST_GATE), icp, score);
 }
 
 double meritOf(const Solution& solution) {
