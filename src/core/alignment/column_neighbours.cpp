@@ -33,7 +33,12 @@ class ColumnNeighbours final : public NearestNeighbours {
            centre.col + ring >= cols_ - 1;
   }
   void searchRow(int row, int first, int last, const Eigen::Vector3f& query, Found& best) const;
-  void searchRing(const Cell& centre, int ring, const Eigen::Vector3f& query, Found& best) const;
+  void searchColumn(int col, int first, int last, const Eigen::Vector3f& query, Found& best) const;
+  /// First ring around a cell that has columns of the grid.
+  int firstRing(const Cell& centre) const {
+    return std::max({0, -centre.row, -centre.col, centre.row - rows_ + 1, centre.col - cols_ + 1});
+  }
+  bool searchRing(const Cell& centre, int ring, const Eigen::Vector3f& query, Found& best) const;
 
   Eigen::Array2f origin_;
   float cell_size_;
@@ -82,7 +87,9 @@ ColumnNeighbours::ColumnNeighbours(const PointsView& points, double spacing) {
 ColumnNeighbours::Cell ColumnNeighbours::cellOf(float x, float y) const {
   static constexpr float FAR = 1e6F;  // beyond any grid, within an int
   const auto cell = [this](float coordinate, float origin) {
-    return static_cast<int>(std::floor(std::clamp((coordinate - origin) / cell_size_, -FAR, FAR)));
+    const float place = std::clamp((coordinate - origin) / cell_size_, -FAR, FAR);
+    const int towards_zero = static_cast<int>(place);
+    return towards_zero - (static_cast<float>(towards_zero) > place ? 1 : 0);
   };
   return {cell(x, origin_.x()), cell(y, origin_.y())};
 }
@@ -101,31 +108,47 @@ void ColumnNeighbours::searchRow(int row, int first, int last, const Eigen::Vect
   }
 }
 
-void ColumnNeighbours::searchRing(const Cell& centre, int ring, const Eigen::Vector3f& query,
+void ColumnNeighbours::searchColumn(int col, int first, int last, const Eigen::Vector3f& query,
+                                    Found& best) const {
+  if (col < 0 || col >= cols_) return;
+  for (int row = std::max(0, first); row <= std::min(rows_ - 1, last); ++row)
+    searchRow(row, col, col, query, best);
+}
+
+/// Searches those sides of a ring that may hold a nearer point. \return false if none of them may
+bool ColumnNeighbours::searchRing(const Cell& centre, int ring, const Eigen::Vector3f& query,
                                   Found& best) const {
-  searchRow(centre.row - ring, centre.col - ring, centre.col + ring, query, best);
-  if (ring == 0) return;
-  for (int row = std::max(0, centre.row - ring + 1); row < std::min(rows_, centre.row + ring); ++row) {
-    searchRow(row, centre.col - ring, centre.col - ring, query, best);
-    searchRow(row, centre.col + ring, centre.col + ring, query, best);
-  }
-  searchRow(centre.row + ring, centre.col - ring, centre.col + ring, query, best);
+  const Eigen::Array2f low =
+      query.head<2>().array() - origin_ -
+      cell_size_ * Eigen::Array2f(static_cast<float>(centre.row), static_cast<float>(centre.col));
+  const Eigen::Array2f high = cell_size_ - low;
+  bool searched = false;
+  const auto searchIfNear = [&](float to_side, const auto& search_side) {
+    const float distance = to_side + static_cast<float>(ring - 1) * cell_size_;
+    if (distance > 0 && distance * distance >= best.squared_distance) return;
+    search_side();
+    searched = true;
+  };
+  const auto searchWholeRow = [&](int row) {
+    searchRow(row, centre.col - ring, centre.col + ring, query, best);
+  };
+  const auto searchBetweenRows = [&](int col) {
+    searchColumn(col, centre.row - ring + 1, centre.row + ring - 1, query, best);
+  };
+  searchIfNear(low.x(), [&] { searchWholeRow(centre.row - ring); });
+  if (ring == 0) return true;
+  searchIfNear(high.x(), [&] { searchWholeRow(centre.row + ring); });
+  searchIfNear(low.y(), [&] { searchBetweenRows(centre.col - ring); });
+  searchIfNear(high.y(), [&] { searchBetweenRows(centre.col + ring); });
+  return searched;
 }
 
 Neighbour ColumnNeighbours::nearest(const Eigen::Vector3f& query, float reach) const {
   const Cell centre = cellOf(query.x(), query.y());
-  const Eigen::Array2f corner =
-      origin_ + cell_size_ * Eigen::Array2f(static_cast<float>(centre.row), static_cast<float>(centre.col));
-  const Eigen::Array2f within_cell = query.head<2>().array() - corner;
-  const float to_side = std::min(within_cell.minCoeff(), cell_size_ - within_cell.maxCoeff());
   const std::size_t none = index_.size();
   Found best{std::nextafter(reach * reach, std::numeric_limits<float>::max()), none};
-  for (int ring = 0;; ++ring) {
-    const float to_ring = ring == 0 ? 0 : to_side + static_cast<float>(ring - 1) * cell_size_;
-    if (to_ring > 0 && to_ring * to_ring >= best.squared_distance) break;
-    searchRing(centre, ring, query, best);
+  for (int ring = firstRing(centre); searchRing(centre, ring, query, best); ++ring)
     if (reachesAround(centre, ring)) break;
-  }
   if (best.position == none) return {};
   return {index_[best.position], best.squared_distance};
 }
