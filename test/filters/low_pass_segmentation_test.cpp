@@ -1,155 +1,17 @@
 // FFTGroundSegmentation with the published estimator.
 
-#include <gtest/gtest.h>
-#include <pcl/exceptions.h>
-#include <pcl/point_types.h>
-
-#include <cmath>
 #include <complex>
-#include <functional>
 #include <numeric>
 #include <string>
 
-#include "clouds.h"
-#include "low_pass_segmentation.h"
+#include "low_pass_fixture.h"
 #include "output_capture.h"
 
 namespace pcl_fft_ground::test {
 namespace {
 
-using Segmenter = LowPassSegmentation<pcl::PointXYZ>;
-
-constexpr double CELL = 0.05;
-
-/// A segmenter suited to boxScene(), with an input.
-Segmenter segmenterOn(const Eigen::Matrix3Xf& points) {
-  Segmenter segmenter;
-  segmenter.setCellSize(CELL);
-  segmenter.setMaximumObjectSize(0.8);
-  segmenter.setInputCloud(cloudOf<pcl::PointXYZ>(points));
-  return segmenter;
-}
-
-struct Parts {
-  pcl::PointIndices ground, objects;
-};
-
-Parts segment(Segmenter& segmenter) {
-  Parts parts;
-  segmenter.segment(parts.ground, parts.objects);
-  return parts;
-}
-
-std::vector<bool> objectFlags(Segmenter& segmenter) {
-  std::vector<bool> flags(segmenter.getInputCloud()->size(), false);
-  for (const pcl::index_t i : segment(segmenter).objects.indices) flags[static_cast<std::size_t>(i)] = true;
-  return flags;
-}
-
-double heightAbove(const Segmenter& segmenter, std::size_t n) {
-  return segmenter.getGroundSurface().heightAbove(
-      (*segmenter.getInputCloud())[n].getVector3fMap().cast<double>());
-}
-
-/// Expects the labels of two runs to be equal but for points within 1e-6 m of the surface.
-void expectSameLabels(Segmenter& first, Segmenter& second) {
-  const std::vector<bool> a = objectFlags(first), b = objectFlags(second);
-  ASSERT_EQ(a.size(), b.size());
-  EXPECT_GT(std::count(a.begin(), a.end(), true), 100);
-  for (std::size_t n = 0; n < a.size(); ++n)
-    EXPECT_TRUE(a[n] == b[n] || std::abs(heightAbove(first, n)) <= 1e-6)
-        << "point " << n << " at " << heightAbove(first, n) << " m";
-}
-
-/// The points turned, computed in double.
-Eigen::Matrix3Xf turned(const Eigen::Matrix3Xf& points, double degrees, const Eigen::Vector3d& axis) {
-  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(degrees * M_PI / 180, axis).toRotationMatrix();
-  return (rotation * points.cast<double>()).cast<float>();
-}
-
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
-}
-
-/// Expects the call to throw a message that holds all the parts.
-void expectRejected(const std::function<void()>& call, const std::vector<std::string>& parts) {
-  try {
-    call();
-    ADD_FAILURE() << "accepted " << parts[1] << " as " << parts[0];
-  } catch (const pcl::PCLException& error) {
-    for (const std::string& part : parts) EXPECT_TRUE(contains(error.what(), part)) << error.what();
-  }
-}
-
-TEST(LowPassSegmentation, DefaultsAreThePapers) {
-  const Segmenter segmenter;
-  EXPECT_EQ(segmenter.getCellSize(), 0.02);
-  EXPECT_EQ(segmenter.getRelativeMaximumObjectSize(), 0.5);
-  EXPECT_TRUE(std::isnan(segmenter.getMaximumObjectSize()));
-  EXPECT_EQ(segmenter.getHeightTolerance(), 0.0);
-  EXPECT_EQ(segmenter.getCutoffFrequency(), 0.0);
-  EXPECT_EQ(segmenter.getFilterOrder(), 2U);
-  EXPECT_EQ(segmenter.getPassbandRipple(), 3.0);
-  EXPECT_EQ(segmenter.getPeakWindow(), 1U);
-  EXPECT_EQ(segmenter.getPeakThreshold(), 0.0);
-  EXPECT_EQ(segmenter.getGridLengths(), core::GridLengths::SMOOTH);
-  EXPECT_EQ(segmenter.getUpEstimation(), UpEstimation::PRINCIPAL_AXIS);
-  EXPECT_EQ(segmenter.getYaw(), Yaw::MIN_AREA_RECTANGLE);
-  EXPECT_EQ(segmenter.getUpDirection(), Eigen::Vector3d::UnitZ());
-  EXPECT_EQ(segmenter.getElevationGrid().elevation.size(), 0);
-  EXPECT_EQ(segmenter.getGroundSurface().height.size(), 0);
-  EXPECT_TRUE(segmenter.getSpectrumPeaks().empty());
-  EXPECT_TRUE(segmenter.getFrame().isApprox(Eigen::Isometry3d::Identity(), 0.0));
-}
-
-TEST(LowPassSegmentation, SettersReadBack) {
-  Segmenter segmenter;
-  segmenter.setCellSize(0.5);
-  segmenter.setHeightTolerance(-0.25);
-  segmenter.setCutoffFrequency(M_SQRT2);
-  segmenter.setFilterOrder(7);
-  segmenter.setPassbandRipple(0.5);
-  segmenter.setPeakWindow(3);
-  segmenter.setPeakThreshold(1.5);
-  segmenter.setGridLengths(core::GridLengths::EXACT);
-  EXPECT_EQ(segmenter.getCellSize(), 0.5);
-  EXPECT_EQ(segmenter.getHeightTolerance(), -0.25);
-  EXPECT_EQ(segmenter.getCutoffFrequency(), M_SQRT2);
-  EXPECT_EQ(segmenter.getFilterOrder(), 7U);
-  EXPECT_EQ(segmenter.getPassbandRipple(), 0.5);
-  EXPECT_EQ(segmenter.getPeakWindow(), 3U);
-  EXPECT_EQ(segmenter.getPeakThreshold(), 1.5);
-  EXPECT_EQ(segmenter.getGridLengths(), core::GridLengths::EXACT);
-}
-
-TEST(LowPassSegmentation, InvalidValuesAreNamedWithTheirRange) {
-  Segmenter s;
-  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-  for (const auto& [value, text] : std::vector<std::pair<double, std::string>>{
-           {0.0, "0"}, {-0.5, "-0.5"}, {nan, "nan"}, {infinity, "inf"}}) {
-    const double v = value;
-    expectRejected([&] { s.setCellSize(v); }, {"cell size", text, "above 0"});
-    expectRejected([&] { s.setMaximumObjectSize(v); }, {"maximum object size", text, "above 0"});
-    expectRejected([&] { s.setRelativeMaximumObjectSize(v); },
-                   {"relative maximum object size", text, "(0, 1]"});
-    expectRejected([&] { s.setPassbandRipple(v); }, {"passband ripple", text, "(0, 100]"});
-  }
-  expectRejected([&] { s.setRelativeMaximumObjectSize(1.25); },
-                 {"relative maximum object size", "1.25", "(0, 1]"});
-  expectRejected([&] { s.setHeightTolerance(nan); }, {"height tolerance", "nan", "finite"});
-  expectRejected([&] { s.setHeightTolerance(infinity); }, {"height tolerance", "inf", "finite"});
-  expectRejected([&] { s.setCutoffFrequency(-0.1); }, {"cut-off frequency", "-0.1", "(0, 1.41421]"});
-  expectRejected([&] { s.setCutoffFrequency(1.5); }, {"cut-off frequency", "1.5", "(0, 1.41421]"});
-  expectRejected([&] { s.setCutoffFrequency(nan); }, {"cut-off frequency", "nan", "(0, 1.41421]"});
-  expectRejected([&] { s.setFilterOrder(0); }, {"filter order", "0", "[1, 100]"});
-  expectRejected([&] { s.setFilterOrder(101); }, {"filter order", "101", "[1, 100]"});
-  expectRejected([&] { s.setPassbandRipple(101); }, {"passband ripple", "101", "(0, 100]"});
-  expectRejected([&] { s.setPeakWindow(0); }, {"peak window", "0", "[1, 1000]"});
-  expectRejected([&] { s.setPeakWindow(1001); }, {"peak window", "1001", "[1, 1000]"});
-  expectRejected([&] { s.setPeakThreshold(-1); }, {"peak threshold", "-1", "at least 0"});
-  expectRejected([&] { s.setPeakThreshold(infinity); }, {"peak threshold", "inf", "finite"});
-  EXPECT_EQ(s.getCellSize(), 0.02);  // nothing of it was kept
-  EXPECT_EQ(s.getFilterOrder(), 2U);
 }
 
 TEST(LowPassSegmentation, ElevationGridHoldsTheHighestPointOfEachCell) {
@@ -392,72 +254,6 @@ TEST(LowPassSegmentation, AFarPointDoesNotStretchTheGrid) {
   segmenter.setInputCloud(undisturbed.getInputCloud());
   segment(segmenter);
   EXPECT_TRUE(segmenter.getFarPoints().empty());
-}
-
-TEST(LowPassSegmentation, FrameBringsTheCentroidToTheOrigin) {
-  const Scene scene = boxScene();
-  Segmenter segmenter = segmenterOn(scene.points);
-  segment(segmenter);
-  const Eigen::Vector3d centroid = scene.points.cast<double>().rowwise().mean();
-  EXPECT_LT((segmenter.getFrame() * centroid).norm(), 1e-5);
-  const Eigen::Matrix3d rotation = segmenter.getFrame().linear();
-  EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
-  EXPECT_GT(rotation(2, 2), 0.99);
-}
-
-TEST(LowPassSegmentation, UpDirectionChoosesTheSideThatIsUp) {
-  Segmenter segmenter = segmenterOn(boxScene().points);
-  segmenter.setUpDirection(-Eigen::Vector3d::UnitZ());
-  segment(segmenter);
-  EXPECT_LT(segmenter.getFrame().linear()(2, 2), -0.99);
-  segmenter.setUpEstimation(UpEstimation::GIVEN);
-  segmenter.setUpDirection(Eigen::Vector3d(0, 1e-3, 1e-3));
-  segment(segmenter);
-  EXPECT_TRUE((segmenter.getFrame().linear() * Eigen::Vector3d(0, M_SQRT1_2, M_SQRT1_2))
-                  .isApprox(Eigen::Vector3d::UnitZ(), 1e-9));
-}
-
-TEST(LowPassSegmentation, LabelsDoNotDependOnWhereTheSceneLies) {
-  const Eigen::Matrix3Xf points = boxScene().points;
-  const Eigen::Matrix3Xf moved = points.colwise() + Eigen::Vector3f(16, -8, 4);  // exact in float
-  Segmenter here = segmenterOn(points), there = segmenterOn(moved);
-  expectSameLabels(here, there);
-}
-
-TEST(LowPassSegmentation, LabelsDoNotDependOnAQuarterTurnAboutUp) {
-  const Eigen::Matrix3Xf points = boxScene().points;
-  Eigen::Matrix3Xf quarter = points;
-  quarter.row(0) = -points.row(1);
-  quarter.row(1) = points.row(0);
-  // The grid starts at another corner after the turn. It is the same grid, to 0.7 micrometres, if the cells
-  // fill the rectangle of 4 m x 2.5 m.
-  Segmenter straight = segmenterOn(points), turned_scene = segmenterOn(quarter);
-  for (Segmenter* segmenter : {&straight, &turned_scene}) {
-    segmenter->setCellSize(CELL * (1 + 1.8e-7));
-    segmenter->setUpEstimation(UpEstimation::GIVEN);
-  }
-  segment(straight);
-  segment(turned_scene);
-  ASSERT_EQ(straight.getElevationGrid().elevation.size(), 80 * 50);
-  ASSERT_EQ(turned_scene.getElevationGrid().elevation.size(), 80 * 50);
-  expectSameLabels(straight, turned_scene);
-}
-
-TEST(LowPassSegmentation, LabelsDoNotDependOnPointOrder) {
-  const Eigen::Matrix3Xf points = boxScene().points;
-  const Eigen::Matrix3Xf reversed = points.rowwise().reverse();
-  Segmenter forward = segmenterOn(points), backward = segmenterOn(reversed);
-  std::vector<bool> backward_flags = objectFlags(backward);
-  std::reverse(backward_flags.begin(), backward_flags.end());
-  EXPECT_EQ(objectFlags(forward), backward_flags);
-}
-
-TEST(LowPassSegmentation, ATiltedSceneGivesTheLabelsOfTheLevelOne) {
-  // Turned off the axes, so that the yaw of the grid does not stand where it may jump by a quarter turn.
-  const Eigen::Matrix3Xf level = turned(boxScene().points, 20, Eigen::Vector3d::UnitZ());
-  const Eigen::Matrix3Xf tilted = turned(level, 30, Eigen::Vector3d(1, 0, 0));
-  Segmenter on_level = segmenterOn(level), on_tilted = segmenterOn(tilted);
-  expectSameLabels(on_level, on_tilted);
 }
 
 }  // namespace
