@@ -9,130 +9,152 @@ namespace {
 /// A length so short is not halved any more: summing it up is faster.
 constexpr Eigen::Index LARGEST_EVEN_BASE = 4;
 
-}  // namespace
-
-Dct::Dct(Eigen::Index length)
-    : length_(length),
-      base_(length),
-      scales_(static_cast<std::size_t>(length), std::sqrt(2.0 / static_cast<double>(length))),
-      scratch_(scales_.size()) {
-  scales_.front() = std::sqrt(1.0 / static_cast<double>(length));
-  while (base_ % 2 == 0 && base_ > LARGEST_EVEN_BASE) base_ /= 2;
-  secants_.resize(scales_.size());
-  for (Eigen::Index n = length; n > base_; n /= 2)
-    for (Eigen::Index i = 0; i < n / 2; ++i)
-      secants_[static_cast<std::size_t>(n / 2 + i)] =
-          0.5 / std::cos(M_PI * static_cast<double>(2 * i + 1) / static_cast<double>(2 * n));
-  cosines_.resize(base_, base_);
-  for (Eigen::Index i = 0; i < base_; ++i)
-    for (Eigen::Index k = 0; k < base_; ++k)
-      cosines_(k, i) = std::cos(M_PI * static_cast<double>((2 * i + 1) * k % (4 * base_)) /
-                                static_cast<double>(2 * base_));
+/// cos(pi numerator / denominator), the numerator brought into one period first.
+double cosineOf(Eigen::Index numerator, Eigen::Index denominator) {
+  return std::cos(M_PI * static_cast<double>(numerator % (2 * denominator)) /
+                  static_cast<double>(denominator));
 }
 
-/// Sums and scaled differences of mirrored values; the transform of those, halved in length, are the even
-/// coefficients and, two neighbours added, the odd ones.
-void Dct::transform(Lanes* values, Lanes* scratch, Eigen::Index length) const {
-  if (length == base_) {
-    for (Eigen::Index k = 0; k < base_; ++k) {
-      scratch[k] = values[0] * cosines_(k, 0);
-      for (Eigen::Index i = 1; i < base_; ++i) scratch[k] += values[i] * cosines_(k, i);
+}  // namespace
+
+template <typename Number>
+Dct<Number>::Dct(Eigen::Index length)
+    : length_(length),
+      base_(length),
+      scales_(Line::Constant(length, static_cast<Number>(std::sqrt(2.0 / static_cast<double>(length))))),
+      cosines_(length),
+      sines_(length),
+      scratch_(static_cast<std::size_t>(length)) {
+  scales_[0] = static_cast<Number>(std::sqrt(1.0 / static_cast<double>(length)));
+  while (base_ % 2 == 0 && base_ > LARGEST_EVEN_BASE) base_ /= 2;
+  for (Eigen::Index n = length; n > base_; n /= 2)
+    for (Eigen::Index i = 0; i < n / 2; ++i) {
+      cosines_[n / 2 + i] = static_cast<Number>(cosineOf(2 * i + 1, 4 * n));
+      sines_[n / 2 + i] = static_cast<Number>(cosineOf(2 * n - 2 * i - 1, 4 * n));
     }
-    std::copy(scratch, scratch + base_, values);
-    return;
+  second_.resize(base_, base_);
+  fourth_.resize(base_, base_);
+  for (Eigen::Index k = 0; k < base_; ++k)
+    for (Eigen::Index i = 0; i < base_; ++i) {
+      second_(i, k) = static_cast<Number>(cosineOf((2 * i + 1) * k, 2 * base_));
+      fourth_(i, k) = static_cast<Number>(cosineOf((2 * i + 1) * (2 * k + 1), 4 * base_));
+    }
+}
+
+/// The sums of mirrored values give the even coefficients, their differences the odd ones.
+template <typename Number>
+void Dct<Number>::secondOfBase(Lanes* values, Lanes* scratch) const {
+  const Eigen::Index half = base_ / 2, rest = base_ - half;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    scratch[i] = values[i] + values[base_ - 1 - i];
+    scratch[rest + i] = values[i] - values[base_ - 1 - i];
   }
+  if (rest > half) scratch[half] = values[half];
+  for (Eigen::Index k = 0; k < base_; ++k) {
+    const Lanes* part = k % 2 == 0 ? scratch : scratch + rest;
+    Lanes sum = Lanes::Zero();
+    for (Eigen::Index i = 0; i < (k % 2 == 0 ? rest : half); ++i) sum += part[i] * second_(i, k);
+    values[k] = sum;
+  }
+}
+
+template <typename Number>
+void Dct<Number>::secondOfBaseTransposed(Lanes* values, Lanes* scratch) const {
+  for (Eigen::Index i = 0; i < (base_ + 1) / 2; ++i) {
+    Lanes even = values[0], odd = Lanes::Zero();
+    for (Eigen::Index k = 1; k < base_; k += 2) odd += values[k] * second_(i, k);
+    for (Eigen::Index k = 2; k < base_; k += 2) even += values[k] * second_(i, k);
+    scratch[base_ - 1 - i] = even - odd;
+    scratch[i] = even + odd;
+  }
+  std::copy(scratch, scratch + base_, values);
+}
+
+template <typename Number>
+void Dct<Number>::fourthOfBase(Lanes* values, Lanes* scratch) const {
+  for (Eigen::Index k = 0; k < base_; ++k) {
+    Lanes sum = values[0] * fourth_(0, k);
+    for (Eigen::Index i = 1; i < base_; ++i) sum += values[i] * fourth_(i, k);
+    scratch[k] = sum;
+  }
+  std::copy(scratch, scratch + base_, values);
+}
+
+/// The even coefficients are the transform of the sums of mirrored values, the odd ones the DCT-IV of their
+/// differences.
+template <typename Number>
+void Dct<Number>::second(Lanes* values, Lanes* scratch, Eigen::Index length) const {
+  if (length == base_) return secondOfBase(values, scratch);
   const Eigen::Index half = length / 2;
-  const double* secants = secants_.data() + half;
   Lanes* const other = scratch + half;
   for (Eigen::Index i = 0; i < half; ++i) {
     const Lanes first = values[i], last = values[length - 1 - i];
     scratch[i] = first + last;
-    other[i] = (first - last) * secants[i];
+    other[i] = first - last;
   }
-  transform(scratch, values, half);
-  transform(other, values, half);
+  second(scratch, values, half);
+  fourth(other, values, half);
   for (Eigen::Index k = 0; k < half; ++k) {
     values[2 * k] = scratch[k];
-    values[2 * k + 1] = k + 1 < half ? Lanes(other[k] + other[k + 1]) : other[k];
+    values[2 * k + 1] = other[k];
   }
 }
 
-/// The steps of transform() transposed, the last one first.
-void Dct::transposed(Lanes* values, Lanes* scratch, Eigen::Index length) const {
-  if (length == base_) {
-    for (Eigen::Index i = 0; i < base_; ++i) {
-      scratch[i] = values[0];
-      for (Eigen::Index k = 1; k < base_; ++k) scratch[i] += values[k] * cosines_(k, i);
-    }
-    std::copy(scratch, scratch + base_, values);
-    return;
-  }
+/// The steps of second() transposed, the last one first; the DCT-IV is symmetric.
+template <typename Number>
+void Dct<Number>::secondTransposed(Lanes* values, Lanes* scratch, Eigen::Index length) const {
+  if (length == base_) return secondOfBaseTransposed(values, scratch);
   const Eigen::Index half = length / 2;
-  const double* secants = secants_.data() + half;
   Lanes* const other = scratch + half;
   for (Eigen::Index k = 0; k < half; ++k) {
     scratch[k] = values[2 * k];
-    other[k] = k > 0 ? Lanes(values[2 * k + 1] + values[2 * k - 1]) : values[1];
+    other[k] = values[2 * k + 1];
   }
-  transposed(scratch, values, half);
-  transposed(other, values, half);
+  secondTransposed(scratch, values, half);
+  fourth(other, values, half);
   for (Eigen::Index i = 0; i < half; ++i) {
-    const Lanes base_part = other[i] * secants[i];
-    values[i] = scratch[i] + base_part;
-    values[length - 1 - i] = scratch[i] - base_part;
+    values[i] = scratch[i] + other[i];
+    values[length - 1 - i] = scratch[i] - other[i];
   }
 }
 
-void Dct::forward(Lanes* values) {
-  transform(values, scratch_.data(), length_);
-  for (std::size_t k = 0; k < scales_.size(); ++k) values[k] *= scales_[k];
-}
-
-void Dct::inverse(Lanes* values) {
-  for (std::size_t k = 0; k < scales_.size(); ++k) values[k] *= scales_[k];
-  transposed(values, scratch_.data(), length_);
-}
-
-Dct2d::Dct2d(Eigen::Index rows, Eigen::Index cols)
-    : along_rows_(rows),
-      along_cols_(cols),
-      lines_(static_cast<std::size_t>(std::max(rows, cols)), Dct::Lanes::Zero()) {}
-
-void Dct2d::eachColumn(Eigen::ArrayXXd& grid, Transform transform) {
-  for (Eigen::Index j = 0; j < grid.cols(); j += Dct::Lanes::SizeAtCompileTime) {
-    const Eigen::Index lanes = std::min<Eigen::Index>(Dct::Lanes::SizeAtCompileTime, grid.cols() - j);
-    Eigen::Map<Eigen::ArrayXXd> lines(lines_.data()->data(), Dct::Lanes::SizeAtCompileTime, grid.rows());
-    lines.topRows(lanes) = grid.middleCols(j, lanes).transpose();
-    (along_rows_.*transform)(lines_.data());
-    grid.middleCols(j, lanes) = lines.topRows(lanes).transpose();
+/// DCT-IV, sum_i values_i cos(pi (2 i + 1) (2 k + 1) / (4 n)): mirrored values rotated, then the sums and
+/// differences of two transforms of half the length.
+template <typename Number>
+void Dct<Number>::fourth(Lanes* values, Lanes* scratch, Eigen::Index length) const {
+  if (length == base_) return fourthOfBase(values, scratch);
+  const Eigen::Index half = length / 2;
+  const Number *cosines = cosines_.data() + half, *sines = sines_.data() + half;
+  Lanes* const other = scratch + half;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    const Lanes first = values[i], last = values[length - 1 - i];
+    const Number sign = i % 2 == 0 ? Number(1) : Number(-1);
+    scratch[i] = first * cosines[i] + last * sines[i];
+    other[i] = last * (sign * cosines[i]) - first * (sign * sines[i]);
   }
-}
-
-void Dct2d::eachRow(Eigen::ArrayXXd& grid, Transform transform) {
-  for (Eigen::Index i = 0; i < grid.rows(); i += Dct::Lanes::SizeAtCompileTime) {
-    const Eigen::Index lanes = std::min<Eigen::Index>(Dct::Lanes::SizeAtCompileTime, grid.rows() - i);
-    Eigen::Map<Eigen::ArrayXXd> lines(lines_.data()->data(), Dct::Lanes::SizeAtCompileTime, grid.cols());
-    lines.topRows(lanes) = grid.middleRows(i, lanes);
-    (along_cols_.*transform)(lines_.data());
-    grid.middleRows(i, lanes) = lines.topRows(lanes);
+  second(scratch, values, half);
+  second(other, values, half);
+  values[0] = scratch[0];
+  for (Eigen::Index k = 1; k < half; ++k) {
+    values[2 * k - 1] = scratch[k] - other[half - k];
+    values[2 * k] = scratch[k] + other[half - k];
   }
+  values[length - 1] = -other[0];
 }
 
-void Dct2d::forward(Eigen::ArrayXXd& grid) {
-  eachColumn(grid, &Dct::forward);
-  eachRow(grid, &Dct::forward);
+template <typename Number>
+void Dct<Number>::forward(Lanes* values) {
+  second(values, scratch_.data(), length_);
+  for (Eigen::Index k = 0; k < length_; ++k) values[k] *= scales_[k];
 }
 
-void Dct2d::inverse(Eigen::ArrayXXd& coefficients) {
-  eachRow(coefficients, &Dct::inverse);
-  eachColumn(coefficients, &Dct::inverse);
+template <typename Number>
+void Dct<Number>::inverse(Lanes* values) {
+  for (Eigen::Index k = 0; k < length_; ++k) values[k] *= scales_[k];
+  secondTransposed(values, scratch_.data(), length_);
 }
 
-Eigen::Index fastDctLength(Eigen::Index length) {
-  constexpr Eigen::Index LARGEST_ODD_FACTOR = 15;
-  Eigen::Index step = 1;
-  while (length > (LARGEST_ODD_FACTOR + 1) * step) step *= 2;
-  return (length + step - 1) / step * step;
-}
+template class Dct<float>;
+template class Dct<double>;
 
 }  // namespace pcl_fft_ground::core

@@ -5,17 +5,19 @@
 
 namespace pcl_fft_ground::core {
 
-/** Orthonormal cosine transform (DCT-II) of real lines of one length, and its inverse (DCT-III).
+/** Orthonormal cosine transform (DCT-II) of lines of one length, in place, and its inverse.
  *
- * Coefficient k of a line x is c_k sum_i x_i cos(pi (2 i + 1) k / (2 N)), c_0 = sqrt(1 / N), c_k = sqrt(2 /
+ * Coefficient k is c_k sum_i values_i cos(pi (2 i + 1) k / (2 N)), c_0 = sqrt(1 / N), c_k = sqrt(2 /
  * N): the line continues evenly beyond its ends, without wrap-around. Even lengths are halved again and
- * again (Lee 1984), the rest m is summed up: O(N (m + log N)). Several lines go through side by side.
+ * again by rotations (Plonka and Tasche 2005), which keep the precision whatever the length; the rest m is
+ * summed up: O(N (m + log N)). Several lines go through side by side.
  * An object holds its scratch space: one per thread.
  */
+template <typename Number>
 class Dct {
  public:
   /// A value of each of the lines that are transformed together.
-  using Lanes = Eigen::Array<double, 8, 1>;
+  using Lanes = Eigen::Array<Number, 16, 1>;
 
   explicit Dct(Eigen::Index length);
 
@@ -28,35 +30,48 @@ class Dct {
   void inverse(Lanes* values);
 
  private:
-  void transform(Lanes* values, Lanes* scratch, Eigen::Index length) const;
-  void transposed(Lanes* values, Lanes* scratch, Eigen::Index length) const;
+  using Line = Eigen::Array<Number, Eigen::Dynamic, 1>;
 
-  Eigen::Index length_, base_;   // base_: what is left of the length after halving
-  std::vector<double> scales_;   // c_k
-  std::vector<double> secants_;  // 1 / (2 cos(pi (2 i + 1) / (2 n))) at n / 2 + i, for every halved n
-  Eigen::ArrayXXd cosines_;      // (k, i) of the base
+  // Without the factors c_k; `scratch` is as long as the values.
+  void second(Lanes* values, Lanes* scratch, Eigen::Index length) const;
+  void secondTransposed(Lanes* values, Lanes* scratch, Eigen::Index length) const;
+  void fourth(Lanes* values, Lanes* scratch, Eigen::Index length) const;
+  void secondOfBase(Lanes* values, Lanes* scratch) const;
+  void secondOfBaseTransposed(Lanes* values, Lanes* scratch) const;
+  void fourthOfBase(Lanes* values, Lanes* scratch) const;
+
+  Eigen::Index length_, base_;  // base_: what is left of the length after halving
+  Line scales_;                 // c_k
+  Line cosines_, sines_;        // of pi (2 i + 1) / (4 n), at n / 2 + i, for every halved n
+  Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic> second_, fourth_;  // (i, k) of the base
   std::vector<Lanes> scratch_;
 };
 
 /// Orthonormal cosine transform of grids of one size, in place.
+template <typename Number>
 class Dct2d {
  public:
+  using Grid = Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic>;
+
   Dct2d(Eigen::Index rows, Eigen::Index cols);
 
   /// Coefficient (k, l) belongs to k half waves along the rows and l along the columns.
-  void forward(Eigen::ArrayXXd& grid);
+  void forward(Grid& grid);
 
   /// Undoes forward().
-  void inverse(Eigen::ArrayXXd& coefficients);
+  void inverse(Grid& coefficients);
 
  private:
-  using Transform = void (Dct::*)(Dct::Lanes*);
+  using Lanes = typename Dct<Number>::Lanes;
+  using Transform = void (Dct<Number>::*)(Lanes*);
 
-  void eachColumn(Eigen::ArrayXXd& grid, Transform transform);
-  void eachRow(Eigen::ArrayXXd& grid, Transform transform);
+  void eachColumn(Grid& grid, Transform transform);
+  void eachRow(Grid& grid, Transform transform);
+  template <int LinesAtCompileTime, typename Lines>
+  void apply(Dct<Number>& dct, Transform transform, Lines&& lines);
 
-  Dct along_rows_, along_cols_;
-  std::vector<Dct::Lanes> lines_;
+  Dct<Number> along_rows_, along_cols_;
+  std::vector<Lanes> lines_;
 };
 
 /// The smallest length from `length` on that is transformed fast: its odd factor is 15 at the most.

@@ -19,14 +19,16 @@ Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Inde
 
 PenalisedFit::PenalisedFit(Eigen::Index rows, Eigen::Index cols, double cell_size, const BandLimit& limit)
     : transform_(rows, cols),
-      penalty_(penaltyOf(limit, rows, cols, cell_size)),
+      step_transform_(rows, cols),
       surface_(Eigen::ArrayXXd::Zero(rows, cols)),
       coefficients_(surface_),
-      residual_(rows, cols),
+      penalty_(penaltyOf(limit, rows, cols, cell_size).cast<float>()),
+      weights_(rows, cols),
       preconditioner_(rows, cols),
+      residual_(rows, cols),
       direction_(rows, cols),
-      step_(rows, cols),
-      image_(rows, cols) {}
+      image_(rows, cols),
+      step_(rows, cols) {}
 
 void PenalisedFit::startFrom(const Eigen::ArrayXXd& surface) {
   surface_ = surface;
@@ -36,24 +38,25 @@ void PenalisedFit::startFrom(const Eigen::ArrayXXd& surface) {
 
 void PenalisedFit::improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd& weighted_residuals,
                            const Effort& effort) {
-  residual_ = weighted_residuals;
-  transform_.forward(residual_);
-  residual_ -= penalty_ * coefficients_;
-  preconditioner_ = 1 / (std::max(weights.mean(), 0.05) + penalty_);
+  weights_ = weights.cast<float>();
+  residual_ = weighted_residuals.cast<float>();
+  step_transform_.forward(residual_);
+  residual_ -= penalty_ * coefficients_.cast<float>();
+  preconditioner_ = 1 / (std::max(weights_.mean(), 0.05F) + penalty_);
   direction_ = preconditioner_ * residual_;
-  double product = (residual_ * direction_).sum();
+  float product = (residual_ * direction_).sum();
   for (int n = 0; n < effort.steps && product > 0; ++n) {
     step_ = direction_;
-    transform_.inverse(step_);
-    image_ = weights * step_;
-    transform_.forward(image_);
+    step_transform_.inverse(step_);
+    image_ = weights_ * step_;
+    step_transform_.forward(image_);
     image_ += penalty_ * direction_;
-    const double length = product / (direction_ * image_).sum();
-    coefficients_ += length * direction_;
-    surface_ += length * step_;
-    if (length * step_.abs().maxCoeff() < effort.precision) break;
+    const float length = product / (direction_ * image_).sum();
+    coefficients_ += (length * direction_).cast<double>();
+    surface_ += (length * step_).cast<double>();
+    if (length * step_.abs().maxCoeff() < static_cast<float>(effort.precision)) break;
     residual_ -= length * image_;
-    const double next = (preconditioner_ * residual_.square()).sum();
+    const float next = (preconditioner_ * residual_.square()).sum();
     direction_ = preconditioner_ * residual_ + next / product * direction_;
     product = next;
   }
@@ -61,7 +64,7 @@ void PenalisedFit::improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd
 
 void PenalisedFit::lowPass(Eigen::ArrayXXd& heights) {
   transform_.forward(heights);
-  heights /= 1 + penalty_;
+  heights /= 1 + penalty_.cast<double>();
   transform_.inverse(heights);
 }
 

@@ -23,8 +23,9 @@ Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Inde
  *     sum_i w_i (y_i - s_i)^2 + sum_k P_k |s^_k|^2,    s^ the cosine transform of s.
  *
  * With all weights 1 this is the Butterworth power response, s^_k = y^_k / (1 + P_k). Otherwise it is solved
- * for s^ by conjugate gradients, preconditioned with 1 / (mean weight + P_k): two transforms a step. An
- * object serves one grid and one penalty and allocates nothing after its construction.
+ * for s^ by conjugate gradients, preconditioned with 1 / (mean weight + P_k): two transforms a step. The
+ * corrections to the surface are computed in float, which is all that they need; the surface itself is kept
+ * in double. An object serves one grid and one penalty and allocates nothing after its construction.
  */
 class PenalisedFit {
  public:
@@ -53,10 +54,12 @@ class PenalisedFit {
   void lowPass(Eigen::ArrayXXd& heights);
 
  private:
-  Dct2d transform_;
-  Eigen::ArrayXXd penalty_, surface_;
-  Eigen::ArrayXXd coefficients_, residual_, preconditioner_, direction_;  // cosine transforms
-  Eigen::ArrayXXd step_, image_;
+  Dct2d<double> transform_;
+  Dct2d<float> step_transform_;
+  Eigen::ArrayXXd surface_, coefficients_;  // and its cosine transform
+  Eigen::ArrayXXf penalty_, weights_, preconditioner_;
+  Eigen::ArrayXXf residual_, direction_, image_;  // cosine transforms
+  Eigen::ArrayXXf step_;
 };
 
 }  // namespace pcl_fft_ground::core
