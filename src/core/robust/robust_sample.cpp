@@ -21,8 +21,12 @@ std::uint32_t hashOf(const float* coordinates) {
 }  // namespace
 
 Points sampleOf(const PointsView& points, Eigen::Index wanted) {
-  if (points.cols() <= 2 * wanted) return points;
-  const double share = static_cast<double>(wanted) / static_cast<double>(points.cols());
+  return sampleOfSample(points, points.cols(), wanted);
+}
+
+Points sampleOfSample(const PointsView& points, Eigen::Index total, Eigen::Index wanted) {
+  if (total <= 2 * wanted) return points;
+  const double share = static_cast<double>(wanted) / static_cast<double>(total);
   const auto threshold = static_cast<std::uint32_t>(share * 4294967295.0);
   std::vector<std::uint32_t> chosen(static_cast<std::size_t>(points.cols()));
   std::size_t count = 0;

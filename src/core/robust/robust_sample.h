@@ -12,4 +12,9 @@ namespace pcl_fft_ground::core {
  */
 Points sampleOf(const PointsView& points, Eigen::Index wanted);
 
+/** The same points as sampleOf() of all would give, fewer of them taken from a larger sample.
+ * \param total number of the points from which the sample is
+ */
+Points sampleOfSample(const PointsView& sample, Eigen::Index total, Eigen::Index wanted);
+
 }  // namespace pcl_fft_ground::core

@@ -1,10 +1,10 @@
 #include "robust/robust_up.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <vector>
 
 #include "pcl_fft_ground/core/point_statistics.h"
+#include "robust/radix_sort.h"
 #include "robust/robust_sample.h"
 
 namespace pcl_fft_ground::core {
@@ -27,7 +27,7 @@ Sheet principalSheet(const PointsView& points, const Eigen::Vector3d& given) {
 Points thinnestHalf(const Points& points, const Eigen::Vector3d& direction) {
   const Eigen::VectorXf heights = (direction.cast<float>().transpose() * points).transpose();
   std::vector<float> sorted(heights.data(), heights.data() + heights.size());
-  std::sort(sorted.begin(), sorted.end());
+  radixSort(sorted);
   const std::size_t half = sorted.size() / 2;
   std::size_t lowest = 0;
   for (std::size_t n = 0; n + half < sorted.size(); ++n)
@@ -73,7 +73,7 @@ std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointsView& points, co
   constexpr Eigen::Index FEWEST_POINTS = 8, ENOUGH = 4000, ENOUGH_TO_START = 1000;
   const Points sample = sampleOf(points, ENOUGH);
   if (sample.cols() < FEWEST_POINTS) return std::nullopt;
-  const Points few = sampleOf(points, ENOUGH_TO_START);
+  const Points few = sampleOfSample(sample, points.cols(), ENOUGH_TO_START);
   const std::optional<Sheet> rough = few.cols() < FEWEST_POINTS ? std::nullopt : flattestHalf(few, given);
   if (!rough) return std::nullopt;
   const Sheet sheet = concentrated(sample, rough->normal, given);
