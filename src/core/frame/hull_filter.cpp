@@ -1,9 +1,11 @@
 #include "frame/hull_filter.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 #include "pcl_fft_ground/core/convex_hull.h"
+#include "point_block.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -58,22 +60,22 @@ HullFilter::HullFilter(const std::vector<Eigen::Vector2d>& hull, const Horizonta
 }
 
 std::vector<Eigen::Index> HullFilter::outside(const PointsView& points) const {
-  constexpr Eigen::Index BLOCK = 512;
-  std::array<float, BLOCK> strips, heights;
+  PointBlock block;
+  std::array<std::int32_t, PointBlock::SIZE> strips;
+  std::array<float, PointBlock::SIZE> heights;
   const Eigen::Vector3f s = strip_axis_, h = height_axis_;
   const float s_offset = strip_offset_, h_offset = height_offset_;
   std::vector<Eigen::Index> result;
-  for (Eigen::Index begin = 0; begin < points.cols(); begin += BLOCK) {
-    const auto count = static_cast<std::size_t>(std::min(BLOCK, points.cols() - begin));
-    const float* p = points.data() + 3 * begin;
-    for (std::size_t n = 0; n < count; ++n, p += 3) {
-      const float strip = s[0] * p[0] + s[1] * p[1] + (s[2] * p[2] + s_offset);
-      strips[n] = std::min(std::max(strip, 0.0F), static_cast<float>(STRIPS + 1));
-      heights[n] = h[0] * p[0] + h[1] * p[1] + (h[2] * p[2] + h_offset);
+  for (std::size_t begin = 0; begin < static_cast<std::size_t>(points.cols()); begin += block.count) {
+    block.read(points, begin);
+    for (std::size_t n = 0; n < block.count; ++n) {
+      const float strip = s[0] * block.x[n] + s[1] * block.y[n] + (s[2] * block.z[n] + s_offset);
+      strips[n] = static_cast<std::int32_t>(std::min(std::max(strip, 0.0F), static_cast<float>(STRIPS + 1)));
+      heights[n] = h[0] * block.x[n] + h[1] * block.y[n] + (h[2] * block.z[n] + h_offset);
     }
-    for (std::size_t n = 0; n < count; ++n) {
-      const auto& [low, high] = inside_[static_cast<std::size_t>(static_cast<int>(strips[n]))];
-      if (!(heights[n] > low && heights[n] < high)) result.push_back(begin + static_cast<Eigen::Index>(n));
+    for (std::size_t n = 0; n < block.count; ++n) {
+      const auto& [low, high] = inside_[static_cast<std::size_t>(strips[n])];
+      if (!(heights[n] > low && heights[n] < high)) result.push_back(static_cast<Eigen::Index>(begin + n));
     }
   }
   return result;

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "pcl_fft_ground/core/robust_ground.h"
+#include "point_block.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -11,6 +14,14 @@ namespace {
 struct Patch {
   float a, b, c, d;
   float tolerance;
+
+  float heightAt(float u, float v) const { return a + b * u + (c + d * u) * v; }
+};
+
+/// Where points lie between four cell centres.
+struct Places {
+  std::array<std::int32_t, PointBlock::SIZE> patches;
+  std::array<float, PointBlock::SIZE> u, v;  // shares of the way to the next centre
 };
 
 /// The patches of a surface, one more along each axis than there are pairs of cells: beyond the outermost
@@ -27,19 +38,23 @@ class PatchGrid {
       for (int i = 0; i < rows_; ++i) patches_.push_back(patchAt(ground, i, j));
   }
 
-  /// Height [m] of a point above the surface, and above the end of the ground.
-  struct Height {
-    float above_surface, above_ground;
-  };
-  Height heightOf(const float* p) const {
-    const double x = std::clamp((static_cast<double>(p[0]) - first_.x()) * per_metre_, 0.0, rows_ - 1e-6);
-    const double y = std::clamp((static_cast<double>(p[1]) - first_.y()) * per_metre_, 0.0, cols_ - 1e-6);
-    const int i = static_cast<int>(x), j = static_cast<int>(y);
-    const auto u = static_cast<float>(x - i), v = static_cast<float>(y - j);
-    const Patch& patch = patches_[static_cast<std::size_t>(i + j * rows_)];
-    const float height = p[2] - (patch.a + patch.b * u + (patch.c + patch.d * u) * v);
-    return {height, height - patch.tolerance};
+  void locate(const PointBlock& points, Places& places) const {
+    const auto x_first = static_cast<float>(first_.x()), y_first = static_cast<float>(first_.y());
+    const auto per_metre = static_cast<float>(per_metre_);
+    const float x_end = std::nextafter(static_cast<float>(rows_), 0.0F);
+    const float y_end = std::nextafter(static_cast<float>(cols_), 0.0F);
+    const int rows = rows_;
+    for (std::size_t n = 0; n < points.count; ++n) {
+      const float x = std::min(std::max((points.x[n] - x_first) * per_metre, 0.0F), x_end);
+      const float y = std::min(std::max((points.y[n] - y_first) * per_metre, 0.0F), y_end);
+      const auto i = static_cast<std::int32_t>(x), j = static_cast<std::int32_t>(y);
+      places.patches[n] = i + j * rows;
+      places.u[n] = x - static_cast<float>(i);
+      places.v[n] = y - static_cast<float>(j);
+    }
   }
+
+  const Patch& patch(std::int32_t n) const { return patches_[static_cast<std::size_t>(n)]; }
 
  private:
   Patch patchAt(const RobustGround& ground, Eigen::Index i, Eigen::Index j) const {
@@ -66,12 +81,18 @@ RobustLabels labelRobust(const PointsView& points, const RobustGround& ground) {
   if (ground.surface.height.size() == 0) return result;
   const PatchGrid grid(ground);
   const auto deepest = static_cast<float>(-ground.depth_tolerance);
-  for (Eigen::Index n = 0; n < points.cols(); ++n) {
-    const PatchGrid::Height height = grid.heightOf(points.data() + 3 * n);
-    const bool below = height.above_surface < deepest;
-    result.labels[static_cast<std::size_t>(n)] =
-        below | (height.above_ground > 0) ? Label::OBJECT : Label::GROUND;
-    result.below += below ? 1 : 0;
+  PointBlock block;
+  Places places;
+  for (std::size_t begin = 0; begin < result.labels.size(); begin += block.count) {
+    block.read(points, begin);
+    grid.locate(block, places);
+    for (std::size_t n = 0; n < block.count; ++n) {
+      const Patch& patch = grid.patch(places.patches[n]);
+      const float height = block.z[n] - patch.heightAt(places.u[n], places.v[n]);
+      const bool below = height < deepest;
+      result.labels[begin + n] = below | (height > patch.tolerance) ? Label::OBJECT : Label::GROUND;
+      result.below += below ? 1 : 0;
+    }
   }
   return result;
 }
