@@ -134,13 +134,13 @@ CellPoints meanGroundPoints(const SortedPoints& points, const GroundBand& band) 
 Spread spreadAround(const SortedPoints& points, const GroundBand& band) {
   constexpr Eigen::Index ENOUGH = 40000;
   const auto one_in = static_cast<std::size_t>(std::max<Eigen::Index>(points.positions().cols() / ENOUGH, 1));
-  std::vector<double> heights;
+  std::vector<float> heights;
   heights.reserve(2 * ENOUGH);
   for (std::size_t n = 0; n < points.size(); n += one_in) {
     const Tangent tangent(band, centreOf(points, n));
     for (Eigen::Index k = points.begin(n); k < points.end(n); ++k) {
       const double height = tangent.heightAbove(points.positions().data() + 3 * k);
-      if (height >= band.low && height <= band.high) heights.push_back(height);
+      if (height >= band.low && height <= band.high) heights.push_back(static_cast<float>(height));
     }
   }
   return medianSpread(heights);

@@ -49,18 +49,16 @@ std::vector<double> findGround(RobustSurface& surface, const RobustPlan& plan,
 /// \return the spread of the points around it
 double fitGroundPoints(RobustSurface& surface, const SortedPoints& points) {
   constexpr double BAND = 3;  // scales
-  constexpr int ROUNDS = 2;
-  Spread spread = surface.spread();
-  double low = spread.centre - 3 * BAND * spread.scale;  // the lowest points stood for their cells
-  for (int n = 0; n < ROUNDS; ++n) {
-    const double high = spread.centre + BAND * spread.scale;
-    const CellPoints ground = meanGroundPoints(points, {surface.grid(), surface.heights(), low, high});
-    if (!ground.positions.empty()) surface.fitTo(ground);
-    const double reach = 2 * BAND * spread.scale;
-    spread = spreadAround(points, {surface.grid(), surface.heights(), -reach, reach});
-    low = spread.centre - BAND * spread.scale;
-  }
-  return spread.scale;
+  const Spread cells = surface.spread();
+  // Of the cells the lowest points were looked at: first find where all points lie.
+  const Spread points_before =
+      spreadAround(points, {surface.grid(), surface.heights(), cells.centre - 3 * BAND * cells.scale,
+                            cells.centre + BAND * cells.scale});
+  const double band = BAND * points_before.scale;
+  const CellPoints ground = meanGroundPoints(
+      points, {surface.grid(), surface.heights(), points_before.centre - band, points_before.centre + band});
+  if (!ground.positions.empty()) surface.fitTo(ground);
+  return spreadAround(points, {surface.grid(), surface.heights(), -2 * band, 2 * band}).scale;
 }
 
 /// Distance [m] of every cell from the nearest one that holds ground.
@@ -92,7 +90,7 @@ void describeSurface(const RobustSurface& surface, const RobustPlan& plan, Robus
 
 RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
                                   const RobustParameters& parameters) {
-  constexpr Eigen::Index POINTS_PER_CELL = 10;              // as many tell where its ground lies
+  constexpr Eigen::Index POINTS_PER_CELL = 8;               // as many tell where its ground lies
   constexpr double LEAST_SCALE = 0.0015, PRECISION = 1e-4;  // as shares of the largest object
   RobustGround ground;
   ground.surface.frame_from_input = frame_from_input;

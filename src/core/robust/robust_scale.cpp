@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include "robust/radix_sort.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -47,11 +50,16 @@ std::size_t lowestPeak(const Histogram& counts) {
 
 }  // namespace
 
-Spread medianSpread(std::vector<double>& values) {
+Spread medianSpread(std::vector<float>& values) {
   if (values.empty()) return {};
-  const double centre = median(values);
-  for (double& value : values) value = std::abs(value - centre);
-  return {centre, NORMAL_FROM_MEDIAN * median(values)};
+  radixSort(values);
+  const std::size_t half = values.size() / 2;
+  const float centre = values[half];
+  // The nearer half of the sorted values is the window about the centre that reaches least far from it.
+  float distance = std::numeric_limits<float>::infinity();
+  for (std::size_t n = 0; n + half < values.size(); ++n)
+    distance = std::min(distance, std::max(centre - values[n], values[n + half] - centre));
+  return {static_cast<double>(centre), NORMAL_FROM_MEDIAN * static_cast<double>(distance)};
 }
 
 Spread lowestMode(const std::vector<double>& values, double reach) {

@@ -11,7 +11,7 @@ struct Spread {
 };
 
 /// Median and 1.4826 times the median distance from it; zero for no values. The values are reordered.
-Spread medianSpread(std::vector<double>& values);
+Spread medianSpread(std::vector<float>& values);
 
 /** The lowest significant peak of the values' histogram, and the spread below it: where the ground lies if
  * objects stand on it.

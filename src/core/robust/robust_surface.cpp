@@ -11,8 +11,8 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-constexpr double GROUND_SCALES = 3;   // above the ground's median, in its scales, where the weight is 1/2
-constexpr double OUTLIER_SCALES = 8;  // below it, where the weight is 1/4
+constexpr float GROUND_SCALES = 3;   // above the ground's median, in its scales, where the weight is 1/2
+constexpr float OUTLIER_SCALES = 8;  // below it, where the weight is 1/4
 
 /// How often the weights are updated at most, the solver's steps between (warm-started: more are wasted while
 /// the weights still change), and the change of all weights, as a share of them, that ends it.
@@ -27,11 +27,11 @@ constexpr Schedule FINE{30, 3, 3e-3};
 constexpr double SAMPLES_PER_CELL = 6, SAMPLES_PER_CELL_AT_START = 40;
 
 /// Weight of a residual, in scales from the ground's median.
-double weightOf(double deviation) {
-  const double t = std::clamp(GROUND_SCALES + 0.5 - deviation, 0.0, 1.0);
-  const double above = t * t * (3 - 2 * t);
-  const double depth = std::min(deviation, 0.0) / OUTLIER_SCALES;
-  const double below = 1 / (1 + depth * depth);
+float weightOf(float deviation) {
+  const float t = std::min(std::max(GROUND_SCALES + 0.5F - deviation, 0.0F), 1.0F);
+  const float above = t * t * (3 - 2 * t);
+  const float depth = std::min(deviation, 0.0F) / OUTLIER_SCALES;
+  const float below = 1 / (1 + depth * depth);
   return above * below * below;
 }
 
@@ -73,9 +73,10 @@ void RobustSurface::findFootings() {
 }
 
 void RobustSurface::findResiduals() {
-  residuals_.resize(samples_.size());
+  residuals_.resize(static_cast<Eigen::Index>(samples_.size()));
   for (std::size_t n = 0; n < samples_.size(); ++n)
-    residuals_[n] = samples_[n].z() - grid_.value(heights(), footings_[n]);
+    residuals_[static_cast<Eigen::Index>(n)] =
+        static_cast<float>(samples_[n].z() - grid_.value(heights(), footings_[n]));
 }
 
 void RobustSurface::startBelowObjects(double wavelength) {
@@ -83,7 +84,7 @@ void RobustSurface::startBelowObjects(double wavelength) {
   takeSamples(SAMPLES_PER_CELL_AT_START);
   fit_->startFrom(lowerEnvelope(samples_, grid_.geometry(), wavelength, *fit_));
   findResiduals();
-  spread_ = lowestMode(residuals_, 0.5 * wavelength);
+  spread_ = lowestMode({residuals_.begin(), residuals_.end()}, 0.5 * wavelength);
   spread_.scale = std::max({spread_.scale, floors_.least, floors_.slope * wavelength / GROUND_SCALES});
   takeSamples(SAMPLES_PER_CELL);
 }
@@ -94,43 +95,44 @@ void RobustSurface::startFrom(const std::vector<bool>& ground, double wavelength
   samples_ = points_.positions;
   findFootings();
   fit_->startFrom(blockMeans(points_, ground, grid_.geometry()));
-  weights_.assign(ground.begin(), ground.end());
   findResiduals();
+  weights_.resize(residuals_.size());
+  std::copy(ground.begin(), ground.end(), weights_.begin());
   for (int n = 0; n < ROUNDS; ++n) fit(STEPS);
   const double least = std::max(floors_.least, floors_.slope * wavelength / GROUND_SCALES);
   estimateSpread(least, std::numeric_limits<double>::infinity());
 }
 
 void RobustSurface::estimateSpread(double least, double most) {
-  constexpr std::size_t ENOUGH = 4096;
-  const std::size_t one_in = std::max<std::size_t>(residuals_.size() / ENOUGH, 1);
+  constexpr Eigen::Index ENOUGH = 4096;
+  const Eigen::Index one_in = std::max<Eigen::Index>(residuals_.size() / ENOUGH, 1);
   ground_residuals_.clear();
-  for (std::size_t n = 0; n < residuals_.size(); n += one_in)
-    if (weights_[n] > 0.5) ground_residuals_.push_back(residuals_[n]);
+  for (Eigen::Index n = 0; n < residuals_.size(); n += one_in)
+    if (weights_[n] > 0.5F) ground_residuals_.push_back(residuals_[n]);
   spread_ = medianSpread(ground_residuals_);
   spread_.scale = std::clamp(spread_.scale, least, most);
 }
 
 /// \return by how much the weights changed, as a share of them
 double RobustSurface::updateWeights() {
+  weights_.swap(last_weights_);
   weights_.resize(residuals_.size());
-  const double per_scale = 1 / spread_.scale;
-  double change = 0, sum = 0;
-  for (std::size_t n = 0; n < weights_.size(); ++n) {
-    const double weight = weightOf((residuals_[n] - spread_.centre) * per_scale);
-    change += std::abs(weight - weights_[n]);
-    sum += weights_[n];
-    weights_[n] = weight;
-  }
-  return sum > 0 ? change / sum : 1;
+  const auto centre = static_cast<float>(spread_.centre), per_scale = static_cast<float>(1 / spread_.scale);
+  for (Eigen::Index n = 0; n < weights_.size(); ++n)
+    weights_[n] = weightOf((residuals_[n] - centre) * per_scale);
+  const float sum = last_weights_.sum();
+  return sum > 0 ? static_cast<double>((weights_ - last_weights_).abs().sum() / sum) : 1;
 }
 
 /// The residuals are spread on to the grid and added to the surface there: a slope within a coarse cell does
 /// no harm. (Lumped normal equations; repeated, they converge to those of the interpolated surface.)
 void RobustSurface::fit(int steps) {
   sums_.setZero();
-  for (std::size_t n = 0; n < weights_.size(); ++n)
-    if (weights_[n] > 0) grid_.add(sums_, footings_[n], Eigen::Array2d(1, residuals_[n]) * weights_[n]);
+  for (std::size_t n = 0; n < footings_.size(); ++n) {
+    const auto k = static_cast<Eigen::Index>(n);
+    const auto weight = static_cast<double>(weights_[k]), residual = static_cast<double>(residuals_[k]);
+    if (weight > 0) grid_.add(sums_, footings_[n], {weight, weight * residual});
+  }
   const GridGeometry& grid = grid_.geometry();
   const double points_per_sample =
       static_cast<double>(points_.positions.size()) / static_cast<double>(samples_.size());
@@ -153,7 +155,7 @@ void RobustSurface::refine(double wavelength) {
     fit_->startFrom(resampled(coarse, coarse_grid, grid_.geometry()));
   }
   findResiduals();
-  weights_.clear();
+  weights_.setZero(residuals_.size());
   updateWeights();
   const Schedule schedule = grid_.geometry().cell_size > 1.5 * cells_.cell_size ? COARSE : FINE;
   for (int n = 0; n < schedule.updates; ++n) {
@@ -169,8 +171,8 @@ void RobustSurface::fitTo(const CellPoints& points) {
   points_ = points;
   samples_ = points_.positions;
   findFootings();
-  weights_.assign(samples_.size(), 1.0);
   findResiduals();
+  weights_.setOnes(residuals_.size());
   fit(STEPS);
 }
 

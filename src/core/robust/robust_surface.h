@@ -64,7 +64,8 @@ class RobustSurface {
   std::optional<PenalisedFit> fit_;
   std::vector<Eigen::Vector3d> samples_;  // the points that the present scale looks at
   std::vector<Footing> footings_;
-  std::vector<double> residuals_, weights_, ground_residuals_;
+  Eigen::ArrayXf residuals_, weights_, last_weights_;  // of the samples
+  std::vector<float> ground_residuals_;
   Eigen::Array2Xd sums_;  // per cell of the scale's grid: of the weights, of the weighted residuals
   Eigen::ArrayXXd cell_weights_, cell_residuals_;
   Spread spread_;
