@@ -18,7 +18,7 @@ TEST(RadixSort, GivesTheOrderOfComparisons) {
     for (float& value : values) value = normal(random);
     std::vector<float> expected = values;
     std::sort(expected.begin(), expected.end());
-    radixSort(values);
+    RadixSort()(values);
     EXPECT_EQ(values, expected);
   }
 }
@@ -29,7 +29,7 @@ TEST(RadixSort, KnowsAllMagnitudesAndBothSigns) {
   const std::vector<float> ascending{-INF, -MAX, -1e3F, -1, -1e-30F, -TINY, 0, TINY, 1e-30F, 1, 1, MAX, INF};
   std::vector<float> values = ascending;
   std::reverse(values.begin(), values.end());
-  radixSort(values);
+  RadixSort()(values);
   EXPECT_EQ(values, ascending);
 }
 

@@ -240,8 +240,8 @@ TEST(RobustGround, OfNoPointsHasNoCells) {
 TEST(RobustGround, OfDegenerateCloudsIsFinite) {
   Points collinear(3, 50);
   for (Eigen::Index n = 0; n < 50; ++n) collinear.col(n) << 0.1F * static_cast<float>(n), 0, 0;
-  const Points identical = Points::Constant(3, 20, 1.5F);
-  for (const Points& points : {Points(Points::Zero(3, 1)), identical, collinear})
+  const Points identical = Points::Constant(3, 20, 1.5F), many_identical = Points::Constant(3, 50000, 1.5F);
+  for (const Points& points : {Points(Points::Zero(3, 1)), identical, many_identical, collinear})
     for (const bool with_slope : {false, true}) {
       SCOPED_TRACE(points.cols());
       RobustParameters parameters;

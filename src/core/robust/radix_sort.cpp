@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 
 namespace pcl_fft_ground::core {
@@ -32,12 +31,13 @@ std::size_t digitOf(std::uint32_t key, unsigned digit) {
 
 }  // namespace
 
-void radixSort(std::vector<float>& values) {
-  std::vector<std::uint32_t> keys(values.size()), sorted(values.size());
+void RadixSort::operator()(std::vector<float>& values) {
+  keys_.resize(values.size());
+  sorted_.resize(values.size());
   std::array<std::array<std::uint32_t, DIGIT_VALUES>, DIGITS> places{};
   for (std::size_t n = 0; n < values.size(); ++n) {
-    keys[n] = keyOf(values[n]);
-    for (unsigned digit = 0; digit < DIGITS; ++digit) ++places[digit][digitOf(keys[n], digit)];
+    keys_[n] = keyOf(values[n]);
+    for (unsigned digit = 0; digit < DIGITS; ++digit) ++places[digit][digitOf(keys_[n], digit)];
   }
   for (unsigned digit = 0; digit < DIGITS; ++digit) {
     std::uint32_t begin = 0;
@@ -46,10 +46,10 @@ void radixSort(std::vector<float>& values) {
       place = begin;
       begin += count;
     }
-    for (const std::uint32_t key : keys) sorted[places[digit][digitOf(key, digit)]++] = key;
-    keys.swap(sorted);
+    for (const std::uint32_t key : keys_) sorted_[places[digit][digitOf(key, digit)]++] = key;
+    keys_.swap(sorted_);
   }
-  for (std::size_t n = 0; n < values.size(); ++n) values[n] = valueOf(keys[n]);
+  for (std::size_t n = 0; n < values.size(); ++n) values[n] = valueOf(keys_[n]);
 }
 
 }  // namespace pcl_fft_ground::core

@@ -143,7 +143,8 @@ Spread spreadAround(const SortedPoints& points, const GroundBand& band) {
       if (height >= band.low && height <= band.high) heights.push_back(static_cast<float>(height));
     }
   }
-  return medianSpread(heights);
+  RadixSort sort;
+  return medianSpread(heights, sort);
 }
 
 ElevationGrid elevationOf(const CellPoints& points, const GridGeometry& cells) {

@@ -34,6 +34,7 @@ Points sampleOfSample(const PointsView& points, Eigen::Index total, Eigen::Index
     chosen[count] = static_cast<std::uint32_t>(n);
     count += hashOf(points.data() + 3 * n) < threshold ? 1 : 0;
   }
+  if (count == 0) return points;  // identical points: all are chosen or none
   Points sample(3, count);
   for (std::size_t k = 0; k < count; ++k)
     sample.col(static_cast<Eigen::Index>(k)) = points.col(static_cast<Eigen::Index>(chosen[k]));

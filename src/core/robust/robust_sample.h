@@ -6,7 +6,8 @@
 
 namespace pcl_fft_ground::core {
 
-/** About as many of the points as are wanted, all of them if they are no more than twice as many.
+/** About as many of the points as are wanted, all of them if they are no more than twice as many or if none
+ * would be chosen.
  *
  * The coordinates of a point decide on it: which points are chosen does not depend on their order.
  */

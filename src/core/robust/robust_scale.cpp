@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "robust/radix_sort.h"
-
 namespace pcl_fft_ground::core {
 namespace {
 
@@ -50,9 +48,9 @@ std::size_t lowestPeak(const Histogram& counts) {
 
 }  // namespace
 
-Spread medianSpread(std::vector<float>& values) {
+Spread medianSpread(std::vector<float>& values, RadixSort& sort) {
   if (values.empty()) return {};
-  radixSort(values);
+  sort(values);
   const std::size_t half = values.size() / 2;
   const float centre = values[half];
   // The nearer half of the sorted values is the window about the centre that reaches least far from it.

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "robust/radix_sort.h"
+
 namespace pcl_fft_ground::core {
 
 /// Where values lie and how far they spread, whatever a minority of them does.
@@ -11,7 +13,7 @@ struct Spread {
 };
 
 /// Median and 1.4826 times the median distance from it; zero for no values. The values are reordered.
-Spread medianSpread(std::vector<float>& values);
+Spread medianSpread(std::vector<float>& values, RadixSort& sort);
 
 /** The lowest significant peak of the values' histogram, and the spread below it: where the ground lies if
  * objects stand on it.

@@ -109,7 +109,7 @@ void RobustSurface::estimateSpread(double least, double most) {
   ground_residuals_.clear();
   for (Eigen::Index n = 0; n < residuals_.size(); n += one_in)
     if (weights_[n] > 0.5F) ground_residuals_.push_back(residuals_[n]);
-  spread_ = medianSpread(ground_residuals_);
+  spread_ = medianSpread(ground_residuals_, sort_);
   spread_.scale = std::clamp(spread_.scale, least, most);
 }
 

@@ -66,6 +66,7 @@ class RobustSurface {
   std::vector<Footing> footings_;
   Eigen::ArrayXf residuals_, weights_, last_weights_;  // of the samples
   std::vector<float> ground_residuals_;
+  RadixSort sort_;
   Eigen::Array2Xd sums_;  // per cell of the scale's grid: of the weights, of the weighted residuals
   Eigen::ArrayXXd cell_weights_, cell_residuals_;
   Spread spread_;

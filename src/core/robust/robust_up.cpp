@@ -24,10 +24,10 @@ Sheet principalSheet(const PointsView& points, const Eigen::Vector3d& given) {
 }
 
 /// The half of the points that lies in the thinnest slab across a direction.
-Points thinnestHalf(const Points& points, const Eigen::Vector3d& direction) {
+Points thinnestHalf(const Points& points, const Eigen::Vector3d& direction, RadixSort& sort) {
   const Eigen::VectorXf heights = (direction.cast<float>().transpose() * points).transpose();
   std::vector<float> sorted(heights.data(), heights.data() + heights.size());
-  radixSort(sorted);
+  sort(sorted);
   const std::size_t half = sorted.size() / 2;
   std::size_t lowest = 0;
   for (std::size_t n = 0; n + half < sorted.size(); ++n)
@@ -42,9 +42,10 @@ Sheet concentrated(const Points& points, const Eigen::Vector3d& start, const Eig
   constexpr int STEPS = 30;
   constexpr double SETTLED = 5e-4;  // [rad]
   Sheet sheet{start};
+  RadixSort sort;
   for (int n = 0; n < STEPS; ++n) {
     const Eigen::Vector3d last = sheet.normal;
-    sheet = principalSheet(thinnestHalf(points, last), given);
+    sheet = principalSheet(thinnestHalf(points, last, sort), given);
     if ((sheet.normal - last).norm() < SETTLED) break;
   }
   return sheet;
