@@ -51,8 +51,24 @@ class MotionFit {
   PCL_FFT_GROUND_CORE_EXPORT void addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                              double weight);
 
-  /// Motion that lowers the weighted sum of squares most; directions that nothing holds do not move.
-  PCL_FFT_GROUND_CORE_EXPORT Eigen::Isometry3d solve() const;
+  /// Adds or takes away the equations of another fit about the same centre.
+  MotionFit& operator+=(const MotionFit& other) {
+    information_ += other.information_;
+    gradient_ += other.gradient_;
+    return *this;
+  }
+  MotionFit& operator-=(const MotionFit& other) {
+    information_ -= other.information_;
+    gradient_ -= other.gradient_;
+    return *this;
+  }
+
+  /// Shift and rotation vector, as for motionAbout(), that lower the weighted sum of squares most; directions
+  /// that nothing holds do not move.
+  PCL_FFT_GROUND_CORE_EXPORT Vector6d motion() const;
+
+  /// The same as a transform.
+  Eigen::Isometry3d solve() const { return motionAbout(centre_, motion()); }
 
   /// Sum of weight times squared gradient, in the order (shift, rotation) about the centre.
   const Matrix6d& information() const { return information_; }

@@ -53,7 +53,9 @@ struct AlignmentParameters {
   Fallback fallback = Fallback::DENSE;  ///< what follows where segments do not suffice
   std::size_t min_matches = 3;          ///< N_seg: fewer matched segments give no alignment, >= 1
   double min_score = 0.60;              ///< least share of object points that must agree, [0, 1]
-  double max_sigma = 2.5;               ///< largest predicted horizontal deviation [voxels], > 0
+  /// Largest standard deviation, predicted horizontally, and largest root mean square of the distances that
+  /// are left between the surfaces [m], > 0: the precision that is asked for, whatever the resolution.
+  double max_sigma = 0.05;
   NearestNeighboursFactory neighbours = columnNeighbours;  ///< how neighbours are searched
 };
 

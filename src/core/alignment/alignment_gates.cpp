@@ -13,7 +13,6 @@ namespace {
 
 constexpr double DEGREE = 3.14159265358979323846 / 180;
 constexpr double SLACK = 1.15;            // the last refinement may leave the gates by so much
-constexpr double LEAST_DEVIATION = 0.1;   // of a point from its plane, whatever the residuals say [voxels]
 constexpr double CORRELATED_POINTS = 10;  // errors of so many neighbouring points are the same
 
 std::string sentence(const std::string& what, double value, double allowed, const std::string& unit) {
@@ -29,20 +28,20 @@ double largestDeviation(const Eigen::Matrix2d& covariance) {
 
 }  // namespace
 
-std::optional<Matrix6d> covarianceAboutCentre(const IcpResult& icp, double voxel_size) {
+std::optional<Matrix6d> covarianceAboutCentre(const IcpResult& icp) {
   constexpr double UNHELD = 1e-9;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(icp.information);
   const Vector6d values = solver.eigenvalues();
   if (!(values[0] > UNHELD * values[5])) return std::nullopt;
-  const double least = LEAST_DEVIATION * voxel_size;
-  const double variance = CORRELATED_POINTS * std::max(icp.variance, least * least);
-  return variance * solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
-         solver.eigenvectors().transpose();
+  const double least = icp.least_deviation * icp.least_deviation;
+  const double variance = CORRELATED_POINTS * std::max(icp.variance, least);
+  const Matrix6d of_noise = variance * solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
+                            solver.eigenvectors().transpose();
+  return Matrix6d(of_noise + icp.spread);
 }
 
-std::string reasonAgainst(const ScanPair& pair, const IcpResult& icp) {
-  const AlignmentParameters& parameters = pair.parameters();
-  const SearchGates& gates = parameters.gates;
+std::string reasonAgainstMotion(const ScanPair& pair, const IcpResult& icp) {
+  const SearchGates& gates = pair.parameters().gates;
   const Eigen::Vector3d moved = icp.centre - icp.correction.inverse() * icp.centre;
   const double turn = std::abs(yawOf(icp.correction)) / DEGREE;
   const double tilt = tiltOf(icp.correction) / DEGREE;
@@ -52,11 +51,21 @@ std::string reasonAgainst(const ScanPair& pair, const IcpResult& icp) {
     return sentence("the rise", std::abs(moved.z()), SLACK * gates.max_rise, " m");
   if (turn > SLACK * gates.max_turn) return sentence("the turn", turn, SLACK * gates.max_turn, " degrees");
   if (tilt > gates.max_tilt) return sentence("the tilt", tilt, gates.max_tilt, " degrees");
-  const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp, pair.voxelSize());
+  return {};
+}
+
+std::string reasonAgainst(const ScanPair& pair, const IcpResult& icp) {
+  std::string reason = reasonAgainstMotion(pair, icp);
+  if (!reason.empty()) return reason;
+  const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp);
   if (!covariance) return "the matched points leave a direction free";
+  const double max_sigma = pair.parameters().max_sigma;
   const double sigma = largestDeviation(covariance->topLeftCorner<2, 2>());
-  const double max_sigma = parameters.max_sigma * pair.voxelSize();
   if (sigma > max_sigma) return sentence("the predicted horizontal deviation", sigma, max_sigma, " m");
+  // Each scan sees its own side of things; the error that all partners share may be as large as what is left.
+  const double residual = std::sqrt(icp.variance);
+  if (residual > max_sigma)
+    return sentence("the distance left between the surfaces", residual, max_sigma, " m");
   return {};
 }
 
@@ -73,7 +82,7 @@ Alignment alignmentOf(const ScanPair& pair, const IcpResult& icp, AlignmentMetho
   result.method = method;
   result.reference_from_moving = icp.correction * pair.initialGuess();
   result.overlap = overlapOf(pair, icp.correction);
-  const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp, pair.voxelSize());
+  const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp);
   if (covariance) result.covariance = covarianceAboutOrigin(*covariance, icp.centre);
   return result;
 }

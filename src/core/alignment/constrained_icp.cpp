@@ -11,6 +11,7 @@ constexpr double FINEST_GATE = 1.5;       // [voxels]
 constexpr double PLANE_GATE = 3;          // at the start of point-to-plane [voxels]
 constexpr double ROUGHLY_SETTLED = 0.01;  // a smaller step ends point-to-point at the finest gate [voxels]
 constexpr double SETTLED = 0.0005;        // the same for point-to-plane [voxels]
+constexpr double LEAST_DEVIATION = 0.1;   // of a point from its plane, whatever the residuals say [voxels]
 
 std::size_t pointsOf(const std::vector<PlacedSegment>& segments) {
   std::size_t count = 0;
@@ -43,7 +44,7 @@ std::optional<Partners> ConstrainedIcp::partnersOf(const Eigen::Vector3d& point,
     if (nearest.index < 0) continue;
     reach = std::sqrt(static_cast<double>(nearest.squared_distance));
     best = Partners{point, segment.points.col(nearest.index).cast<double>(),
-                    first_place_[j] + static_cast<std::size_t>(nearest.index), weightOf(reach, gate)};
+                    first_place_[j] + static_cast<std::size_t>(nearest.index), weightOf(reach, gate), j};
   }
   return best;
 }
@@ -79,7 +80,9 @@ IcpResult ConstrainedIcp::refine(const std::vector<SegmentMatch>& matches, const
                  [this](const std::vector<Partners>& partners, const Eigen::Vector3d& centre) {
                    return stepToPlanes(partners, centre, normals_);
                  });
-  return summariseIcp(correction, find(correction, FINEST_GATE * voxel), normals_);
+  IcpResult result = summariseIcp(correction, find(correction, FINEST_GATE * voxel), normals_);
+  result.least_deviation = LEAST_DEVIATION * voxel;
+  return result;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -11,6 +11,7 @@
 #include "alignment/alignment_score.h"
 #include "alignment/dense_icp.h"
 #include "alignment/icp.h"
+#include "alignment/plane_icp.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -28,6 +29,7 @@ constexpr double LARGEST_DISTANCE = 1.5;   // from a plane that counts; more cou
 constexpr double TEST_SHIFT = 2.5;    // by which a wrong transform is off, to see what that costs [voxels]
 constexpr double LEAST_CONTRAST = 2;  // factor by which it has to raise the mean squared distance
 constexpr std::size_t TELLING_OBJECTS = 50;  // object points seen by both that have to agree
+constexpr double ROUGHLY = 0.5;              // share of the least score that makes a closer look worth while
 
 /// ICP of the surfaces of two scans, ground included.
 class DenseIcp {
@@ -65,7 +67,7 @@ class DenseIcp {
       if (nearest.index < 0) continue;
       const double distance = std::sqrt(static_cast<double>(nearest.squared_distance));
       found.push_back({point, surface().col(nearest.index).cast<double>(),
-                       static_cast<std::size_t>(nearest.index), weightOf(distance, gate)});
+                       static_cast<std::size_t>(nearest.index), weightOf(distance, gate), 0});
     }
     return found;
   }
@@ -108,31 +110,49 @@ std::string reasonAgainstFit(const ScanPair& pair, DenseIcp& icp, const Eigen::I
   return {};
 }
 
-std::string reasonAgainst(const ScanPair& pair, DenseIcp& icp, const IcpResult& result,
-                          const Agreement& agreement) {
+/// Empty if so many points meet, and so many of the objects, that a closer look is worth while.
+std::string reasonAgainstMeeting(const ScanPair& pair, const DenseIcp& icp, const IcpResult& result,
+                                 const Agreement& agreement, double least_score) {
   const double gate = FINEST_GATE * pair.voxelSize();
   if (icp.findPartners(result.correction, gate).size() < LEAST_POINTS) return "hardly any overlap";
-  const std::string reason = reasonAgainst(pair, result);
+  const std::string reason = reasonAgainstMotion(pair, result);
   if (!reason.empty()) return reason;
-  if (agreement.points >= TELLING_OBJECTS && agreement.score < pair.parameters().min_score)
-    return "the objects do not agree";
-  return reasonAgainstFit(pair, icp, result.correction);
+  if (agreement.points >= TELLING_OBJECTS && agreement.score < least_score) return "the objects do not agree";
+  return {};
+}
+
+Alignment accepted(const ScanPair& pair, const IcpResult& result, const Agreement& agreement) {
+  Alignment alignment = alignmentOf(pair, result, AlignmentMethod::DENSE);
+  alignment.accepted = true;
+  alignment.score = agreement.score;
+  return alignment;
+}
+
+/// Makes what dense ICP came to precise. \return the result or, if it does not pass the gates, why not
+Alignment refineOnPlanes(const ScanPair& pair, DenseIcp& icp, const IcpResult& rough,
+                         const AlignmentScore& score) {
+  const double least_score = pair.parameters().min_score;
+  const Agreement at_first = score.of(rough.correction);
+  const std::string far_off = reasonAgainstMeeting(pair, icp, rough, at_first, ROUGHLY * least_score);
+  if (!far_off.empty()) return refused(pair, far_off);
+  const IcpResult result = alignPlanes(pair, rough.correction);
+  const Agreement agreement = score.of(result.correction);
+  std::string reason = reasonAgainstMeeting(pair, icp, result, agreement, least_score);
+  if (reason.empty()) reason = reasonAgainst(pair, result);
+  if (reason.empty()) reason = reasonAgainstFit(pair, icp, result.correction);
+  if (!reason.empty()) return refused(pair, reason);
+  return accepted(pair, result, agreement);
 }
 
 }  // namespace
 
 Alignment alignDensely(const ScanPair& pair, DensePoints which) {
   DenseIcp icp(pair, which);
-  const bool everywhere = which == DensePoints::EVERYWHERE;
-  const IcpResult result = icp.run(everywhere ? std::vector<double>{WHOLE_SCAN_GATE, WHOLE_SCAN_GATE}
-                                              : std::vector<double>{FIRST_GATE, MIDDLE_GATE, FINEST_GATE});
-  const Agreement agreement = AlignmentScore(pair).of(result.correction);
-  const std::string reason = everywhere ? std::string() : reasonAgainst(pair, icp, result, agreement);
-  if (!reason.empty()) return refused(pair, reason);
-  Alignment alignment = alignmentOf(pair, result, AlignmentMethod::DENSE);
-  alignment.accepted = true;
-  alignment.score = agreement.score;
-  return alignment;
+  const AlignmentScore score(pair);
+  if (which == DensePoints::OVERLAP)
+    return refineOnPlanes(pair, icp, icp.run({FIRST_GATE, MIDDLE_GATE, FINEST_GATE}), score);
+  const IcpResult result = icp.run({WHOLE_SCAN_GATE, WHOLE_SCAN_GATE});
+  return accepted(pair, result, score.of(result.correction));
 }
 
 Alignment alignDensely(const ScanSegments& moving, const ScanSegments& reference,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alignment/jackknife.h"
+
 namespace pcl_fft_ground::core {
 namespace {
 
@@ -17,11 +19,11 @@ Eigen::Vector3d centreOf(const std::vector<Partners>& partners) {
 }
 
 MotionFit fitPlanes(const std::vector<Partners>& partners, const Eigen::Vector3d& centre,
-                    SurfaceNormals& normals, double point_share) {
+                    SurfaceNormals& normals) {
   MotionFit fit(centre);
   for (const Partners& p : partners) {
     fit.addToPlane(p.moving, p.reference, normals.at(p.place, p.reference), p.weight);
-    if (point_share > 0) fit.addToPoint(p.moving, p.reference, point_share * p.weight);
+    fit.addToPoint(p.moving, p.reference, POINT_SHARE * p.weight);
   }
   return fit;
 }
@@ -53,7 +55,7 @@ Eigen::Isometry3d stepToPoints(const std::vector<Partners>& partners, const Eige
 
 Eigen::Isometry3d stepToPlanes(const std::vector<Partners>& partners, const Eigen::Vector3d& centre,
                                SurfaceNormals& normals) {
-  return fitPlanes(partners, centre, normals, POINT_SHARE).solve();
+  return fitPlanes(partners, centre, normals).solve();
 }
 
 IcpResult summariseIcp(const Eigen::Isometry3d& correction, const std::vector<Partners>& partners,
@@ -62,15 +64,20 @@ IcpResult summariseIcp(const Eigen::Isometry3d& correction, const std::vector<Pa
   result.correction = correction;
   if (partners.empty()) return result;
   result.centre = centreOf(partners);
-  result.information = fitPlanes(partners, result.centre, normals, 0).information();
+  std::vector<MotionFit> parts;
   double sum = 0;
   double weights = 0;
   for (const Partners& p : partners) {
-    const double distance = normals.at(p.place, p.reference).dot(p.moving - p.reference);
+    const Eigen::Vector3d& normal = normals.at(p.place, p.reference);
+    parts.resize(std::max(parts.size(), p.part + 1), MotionFit(result.centre));
+    parts[p.part].addToPlane(p.moving, p.reference, normal, p.weight);
+    const double distance = normal.dot(p.moving - p.reference);
     sum += p.weight * distance * distance;
     weights += p.weight;
   }
+  for (const MotionFit& part : parts) result.information += part.information();
   result.variance = sum / weights;
+  result.spread = jackknifeCovariance(parts);
   return result;
 }
 

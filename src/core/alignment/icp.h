@@ -16,6 +16,7 @@ struct Partners {
   Eigen::Vector3d reference;  ///< [m]
   std::size_t place;          ///< number of the partner, for SurfaceNormals
   double weight;              ///< in (0, 1]
+  std::size_t part;           ///< number of the part of the scene whose errors it shares
 };
 
 /// Less for distant partners. \param gate distance [m] from which partners are not taken
@@ -37,6 +38,8 @@ struct IcpResult {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();              ///< of the points that took part
   Matrix6d information = Matrix6d::Zero();  ///< of motions about the centre, for errors of 1 m
   double variance = 0;                      ///< mean squared distance to the planes [m^2]
+  double least_deviation = 0;               ///< of a distance, whatever the residuals say [m]
+  Matrix6d spread = Matrix6d::Zero();       ///< jackknifeCovariance() of the parts, about the centre
 };
 
 using FindPartners = std::function<std::vector<Partners>(const Eigen::Isometry3d& correction, double gate)>;

@@ -50,7 +50,7 @@ void MotionFit::addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& t
   gradient_ += weight * jacobian.transpose() * (to - from);
 }
 
-Eigen::Isometry3d MotionFit::solve() const {
+Vector6d MotionFit::motion() const {
   constexpr double UNHELD = 1e-9;  // relative to the direction that is held best
   // Of dynamic size, as GCC sees uninitialised values in the fixed one where there are none.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information_);
@@ -59,7 +59,7 @@ Eigen::Isometry3d MotionFit::solve() const {
   Vector6d step = Vector6d::Zero();
   for (Eigen::Index k = 0; k < 6; ++k)
     if (values[k] > UNHELD * values[5]) step += along[k] / values[k] * solver.eigenvectors().col(k);
-  return motionAbout(centre_, step);
+  return step;
 }
 
 Matrix6d covarianceAboutOrigin(const Matrix6d& about_centre, const Eigen::Vector3d& centre) {

@@ -141,17 +141,6 @@ Attempt alignBySegments(const ScanPair& pair) {
   return {alignmentOf(pair, best)};
 }
 
-/// The dense alignment or, where it shows enough segments to be the same, the more precise one by these.
-Alignment refinedBySegments(const ScanPair& pair, const Alignment& dense) {
-  ConstrainedIcp icp(pair);
-  const Eigen::Isometry3d correction = dense.reference_from_moving * pair.initialGuess().inverse();
-  const Solution solution = solveFrom(pair, correction, icp, AlignmentScore(pair));
-  if (!solution.refusal.empty()) return dense;
-  Alignment result = alignmentOf(pair, solution);
-  result.method = AlignmentMethod::DENSE;
-  return result;
-}
-
 }  // namespace
 
 SearchGates gatesOf(SearchMode mode) {
@@ -171,7 +160,7 @@ Alignment alignScans(const ScanSegments& moving, const ScanSegments& reference,
   Alignment result = attempt.alignment;
   if (result.accepted || attempt.ambiguous || parameters.fallback == Fallback::NONE) return result;
   const Alignment dense = alignDensely(pair, DensePoints::OVERLAP);
-  if (dense.accepted) return refinedBySegments(pair, dense);
+  if (dense.accepted) return dense;
   result.refusal += "; without segments: " + dense.refusal;
   return result;
 }

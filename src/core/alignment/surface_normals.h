@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "alignment/surface_patch.h"
 #include "pcl_fft_ground/core/nearest_neighbours.h"
 
 namespace pcl_fft_ground::core {
@@ -23,12 +24,8 @@ class SurfaceNormals {
   const Eigen::Vector3d& at(std::size_t number, const Eigen::Vector3d& point);
 
  private:
-  Eigen::Vector3d normalAround(const Eigen::Vector3f& point);
-
-  const Points& surface_;
-  float radius_;
   std::unique_ptr<NearestNeighbours> search_;
-  std::vector<Eigen::Index> near_;
+  PatchFitter patches_;
   std::vector<Eigen::Vector3d> normals_;  // NaN where not yet asked for
 };
 
