@@ -61,6 +61,7 @@ void describe(AlignmentSettings& settings) {
                         {"max-turn", a.gates.max_turn},
                         {"min-matches", a.min_matches},
                         {"min-score", a.min_score},
+                        {"max-sigma", a.max_sigma},
                         {"min-extent", s.min_extent},
                         {"min-voxels", s.min_voxels},
                         {"max-segments", s.max_segments}};
@@ -89,6 +90,8 @@ po::options_description alignmentOptions(const char* fallback) {
   add("fallback", word(fallback), "where segments do not suffice: dense (ICP of the overlap, gated) or none");
   add("min-matches", count(), "N_seg: fewer matched segments give no alignment (3)");
   add("min-score", number("SHARE"), "least share of object points that agree, up to 1 (0.6)");
+  add("max-sigma", number("M"),
+      "largest predicted horizontal deviation, and largest distance left between the surfaces [m] (0.05)");
   add("min-extent", number("M"), "size of the smallest segment [m] (0.1)");
   add("min-voxels", count(), "voxels of the smallest segment (12)");
   add("max-segments", count(), "of more segments the largest are taken (60)");
@@ -119,6 +122,7 @@ AlignmentSettings alignmentSettings(const po::variables_map& values) {
   setNumber(values, "max-shift", 0, INFINITE, alignment.gates.max_shift);
   setNumber(values, "max-turn", 0, 180, alignment.gates.max_turn);
   setNumber(values, "min-score", 0, 1, alignment.min_score);
+  setNumber(values, "max-sigma", 0, INFINITE, alignment.max_sigma);
   setNumber(values, "min-extent", 0, INFINITE, settings.segments.min_extent);
   setCount(values, "min-matches", alignment.min_matches);
   setCount(values, "min-voxels", settings.segments.min_voxels);

@@ -26,8 +26,9 @@ constexpr std::size_t LEAST_POINTS = 200;  // partners that a result has to rest
 constexpr double LARGEST_RESIDUAL = 0.5;   // root of the mean squared distance to the planes [voxels]
 constexpr double LEAST_RESIDUAL = 0.1;     // less says nothing about the contrast [voxels]
 constexpr double LARGEST_DISTANCE = 1.5;   // from a plane that counts; more counts the same [voxels]
-constexpr double TEST_SHIFT = 2.5;    // by which a wrong transform is off, to see what that costs [voxels]
-constexpr double LEAST_CONTRAST = 2;  // factor by which it has to raise the mean squared distance
+constexpr double TEST_SHIFT = 2.5;  // by which a wrong transform is off, to see what that costs [voxels]
+constexpr double TELLING_DISTANCE = 0.5;  // the same for the contrast: what one scan alone sees counts little
+constexpr double LEAST_CONTRAST = 2;      // factor by which it has to raise the mean squared distance
 constexpr std::size_t TELLING_OBJECTS = 50;  // object points seen by both that have to agree
 constexpr double ROUGHLY = 0.5;              // share of the least score that makes a closer look worth while
 
@@ -72,12 +73,12 @@ class DenseIcp {
     return found;
   }
 
-  /// Mean squared distance to the planes after another shift [m^2]; partners are no farther than the finest
-  /// gate.
-  double residualAfter(const Eigen::Vector3d& shift, const Eigen::Isometry3d& correction) {
+  /// Mean squared distance to the planes after another shift [m^2]. \param largest distance that counts;
+  /// more counts the same [voxels]
+  double residualAfter(const Eigen::Vector3d& shift, const Eigen::Isometry3d& correction, double largest) {
     const Eigen::Isometry3d shifted = Eigen::Translation3d(shift) * correction;
     const std::vector<Partners> partners = findPartners(shifted, FIRST_GATE * pair_.voxelSize());
-    const double most = std::pow(LARGEST_DISTANCE * pair_.voxelSize(), 2);
+    const double most = std::pow(largest * pair_.voxelSize(), 2);
     double sum = 0;
     for (const Partners& p : partners) {
       const double distance = normals_.at(p.place, p.reference).dot(p.moving - p.reference);
@@ -98,14 +99,16 @@ class DenseIcp {
 
 /// Empty if the surfaces fit, and fit nowhere near by: a plain sea floor fits anywhere.
 std::string reasonAgainstFit(const ScanPair& pair, DenseIcp& icp, const Eigen::Isometry3d& correction) {
+  const Eigen::Vector3d here = Eigen::Vector3d::Zero();
+  if (std::sqrt(icp.residualAfter(here, correction, LARGEST_DISTANCE)) > LARGEST_RESIDUAL * pair.voxelSize())
+    return "the surfaces do not fit";
   const double least = std::pow(LEAST_RESIDUAL * pair.voxelSize(), 2);
-  const double residual = std::max(least, icp.residualAfter(Eigen::Vector3d::Zero(), correction));
-  if (std::sqrt(residual) > LARGEST_RESIDUAL * pair.voxelSize()) return "the surfaces do not fit";
+  const double residual = std::max(least, icp.residualAfter(here, correction, TELLING_DISTANCE));
   const double shift = TEST_SHIFT * pair.voxelSize();
   for (const Eigen::Vector3d& direction :
        std::array<Eigen::Vector3d, 4>{{Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitX(),
                                        Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitY()}})
-    if (icp.residualAfter(shift * direction, correction) < LEAST_CONTRAST * residual)
+    if (icp.residualAfter(shift * direction, correction, TELLING_DISTANCE) < LEAST_CONTRAST * residual)
       return "the surfaces fit as well elsewhere";
   return {};
 }
