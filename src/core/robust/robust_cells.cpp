@@ -132,7 +132,7 @@ CellPoints meanGroundPoints(const SortedPoints& points, const GroundBand& band) 
 }
 
 Spread spreadAround(const SortedPoints& points, const GroundBand& band) {
-  constexpr Eigen::Index ENOUGH = 40000;
+  constexpr Eigen::Index ENOUGH = 20000;
   const auto one_in = static_cast<std::size_t>(std::max<Eigen::Index>(points.positions().cols() / ENOUGH, 1));
   std::vector<float> heights;
   heights.reserve(2 * ENOUGH);

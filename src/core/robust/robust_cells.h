@@ -30,7 +30,7 @@ struct GroundBand {
 /// The mean of those points of each cell that lie in the band.
 CellPoints meanGroundPoints(const SortedPoints& points, const GroundBand& band);
 
-/// How the points in the band lie around the surface; told from about 40,000 of all points.
+/// How the points in the band lie around the surface; told from about 20,000 of all points.
 Spread spreadAround(const SortedPoints& points, const GroundBand& band);
 
 /// The heights as a grid, empty cells filled from the nearest observed one.

@@ -72,8 +72,7 @@ Eigen::ArrayXXd distanceFromGround(const CellPoints& ground, const GridGeometry&
   for (Eigen::Index j = 0; j < cells.cols; ++j)
     for (Eigen::Index i = 0; i < cells.rows; ++i) {
       const auto cell = static_cast<Eigen::Index>(nearest(i, j));
-      distance(i, j) =
-          std::hypot(static_cast<double>(cell % cells.rows - i), static_cast<double>(cell / cells.rows - j));
+      distance(i, j) = Eigen::Vector2d(cell % cells.rows - i, cell / cells.rows - j).norm();
     }
   return cells.cell_size * distance;
 }

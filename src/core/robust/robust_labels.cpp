@@ -63,7 +63,7 @@ class PatchGrid {
     const Eigen::Index high_i = std::min(i, h.rows() - 1), high_j = std::min(j, h.cols() - 1);
     const double a = h(low_i, low_j), b = h(high_i, low_j) - a, c = h(low_i, high_j) - a;
     const double d = h(high_i, high_j) - a - b - c;
-    const double slope = per_metre_ * std::hypot(b + 0.5 * d, c + 0.5 * d);
+    const double slope = per_metre_ * Eigen::Vector2d(b + 0.5 * d, c + 0.5 * d).norm();
     return {static_cast<float>(a), static_cast<float>(b), static_cast<float>(c), static_cast<float>(d),
             static_cast<float>(ground.tolerance + ground.slope_tolerance * slope)};
   }

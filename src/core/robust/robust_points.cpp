@@ -36,9 +36,12 @@ SortedPoints::SortedPoints(const PointsView& points, const Bounds& bounds, const
     begin += count;
   }
   begins_.push_back(begin);
-  for (std::size_t n = 0; n < cell_of.size(); ++n) {
-    const float* from = points.data() + 3 * n;
-    std::copy(from, from + 3, positions_.data() + 3 * next[static_cast<std::size_t>(cell_of[n])]++);
+  const float* from = points.data();
+  float* const positions = positions_.data();
+  for (const std::int32_t cell : cell_of) {
+    float* const to = positions + 3 * next[static_cast<std::size_t>(cell)]++;
+    for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+    from += 3;
   }
 }
 

@@ -21,7 +21,7 @@ struct Schedule {
   double settled;
 };
 constexpr Schedule COARSE{30, 6, 5e-4};  // cheap, and what grows here decides
-constexpr Schedule FINE{30, 3, 3e-3};
+constexpr Schedule FINE{30, 3, 5e-3};
 
 /// Points that a scale looks at, for each cell of its grid.
 constexpr double SAMPLES_PER_CELL = 6, SAMPLES_PER_CELL_AT_START = 40;
