@@ -62,7 +62,8 @@ struct RobustGround {
  * where s^ is the cosine transform of the surface s, w is 0 for an empty cell, near 0 on an object and 1 on
  * the ground. With w = 1 everywhere this is the Butterworth power response of eq. (1). The weights follow
  * from the residuals of the current surface; it starts from the lower envelope at the largest object's size
- * or, with a maximum slope, from the cells that a growing morphological opening leaves.
+ * or, with a maximum slope, from the cells that a growing morphological opening leaves. Ground above a break
+ * of the land (a quay wall, a terrace) is too large for an object and taken in; the surface bends there.
  *
  * \param level_points points in the level frame
  * \param frame_from_input the transform that brought them there, kept in the surface

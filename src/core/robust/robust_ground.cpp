@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "robust/robust_breaks.h"
 #include "robust/robust_choices.h"
 #include "robust/robust_openings.h"
 #include "robust/robust_sample.h"
@@ -27,21 +28,60 @@ std::vector<double> growGround(RobustSurface& surface, double coarsest, double f
   return wavelengths;
 }
 
+std::vector<bool> pointsIn(const Mask& cells, const CellPoints& points) {
+  std::vector<bool> chosen;
+  chosen.reserve(points.cells.size());
+  for (const Eigen::Index cell : points.cells) chosen.push_back(cells.data()[cell]);
+  return chosen;
+}
+
 /// From the cells that progressive openings leave, at the finest wavelength alone: where land breaks, a
 /// surface of a longer one loses the terraces.
-std::vector<double> openGround(RobustSurface& surface, const GridGeometry& cells,
+std::vector<double> openGround(RobustSurface& surface, const ElevationGrid& elevation,
                                const OpeningParameters& opening, double finest) {
-  surface.startFrom(openedGround(surface.points(), cells, opening), finest);
+  surface.startFrom(pointsIn(openedGround(elevation, opening), surface.points()), finest);
   surface.refine(finest);
   return {finest};
 }
 
-std::vector<double> findGround(RobustSurface& surface, const RobustPlan& plan,
-                               const std::optional<double>& max_slope) {
+/// Cells that hold a point no higher than three scales above the surface.
+Mask cellsOnSurface(const RobustSurface& surface, const GridGeometry& cells) {
+  constexpr double GROUND_SCALES = 3;
+  const double highest = surface.spread().centre + GROUND_SCALES * surface.spread().scale;
+  Mask on_surface = Mask::Constant(cells.rows, cells.cols, false);
+  const CellPoints& points = surface.points();
+  for (std::size_t n = 0; n < points.positions.size(); ++n) {
+    const Eigen::Vector3d& p = points.positions[n];
+    const double height = surface.grid().value(surface.heights(), surface.grid().at(p.x(), p.y()));
+    on_surface.data()[points.cells[n]] = p.z() - height <= highest;
+  }
+  return on_surface;
+}
+
+/// Fits the surface again where there is ground above breaks.
+/// \return all ground cells; none where the land does not break
+Mask bendAtBreaks(RobustSurface& surface, const ElevationGrid& elevation, const ObjectSize& object,
+                  double finest) {
+  const Mask ground = cellsOnSurface(surface, elevation.geometry);
+  const Mask above = groundAboveBreaks(elevation, ground, object);
+  if (!above.any()) return above;
+  surface.startFrom(pointsIn(ground || above, surface.points()), finest);
+  return ground || above;
+}
+
+/// How the ground was found.
+struct Search {
+  std::vector<double> wavelengths;
+  Mask broken;  ///< all ground cells, where the land breaks; otherwise none
+};
+
+Search findGround(RobustSurface& surface, const RobustPlan& plan, const ElevationGrid& elevation,
+                  const std::optional<double>& max_slope) {
   constexpr double LEAST_HEIGHT = 0.01;  // of an object, as a share of the largest
   const double size = plan.max_object_size, finest = plan.finest_wavelength;
-  return max_slope ? openGround(surface, plan.cells, {size, *max_slope, LEAST_HEIGHT * size}, finest)
-                   : growGround(surface, std::max(size, finest), finest);
+  if (max_slope) return {openGround(surface, elevation, {size, *max_slope, LEAST_HEIGHT * size}, finest), {}};
+  std::vector<double> wavelengths = growGround(surface, std::max(size, finest), finest);
+  return {std::move(wavelengths), bendAtBreaks(surface, elevation, {size, LEAST_HEIGHT * size}, finest)};
 }
 
 /// Fits the surface to the ground points themselves: a cell may hold both ground and the foot of an object,
@@ -107,10 +147,14 @@ RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometr
   RobustSurface surface(std::move(cell_points), plan.cells,
                         {plan.finest_wavelength, parameters.filter_order, parameters.passband_ripple},
                         {LEAST_SCALE * plan.max_object_size, plan.slope}, PRECISION * plan.max_object_size);
-  ground.wavelengths = findGround(surface, plan, parameters.max_slope);
+  Search search = findGround(surface, plan, ground.elevation, parameters.max_slope);
+  ground.wavelengths = std::move(search.wavelengths);
   ground.scale = fitGroundPoints(surface, sorted);
   describeSurface(surface, plan, ground);
   chooseTolerances(parameters, points.cols(), ground);
+  if (search.broken.any())
+    followGround(ground.elevation, search.broken, ground.scale, ground.depth_tolerance,
+                 ground.surface.height);
   return ground;
 }
 

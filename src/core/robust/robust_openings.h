@@ -1,8 +1,6 @@
 #pragma once
 
-#include <vector>
-
-#include "robust/robust_cells.h"
+#include "pcl_fft_ground/core/elevation_grid.h"
 
 namespace pcl_fft_ground::core {
 
@@ -13,14 +11,15 @@ struct OpeningParameters {
   double least_height = 0.01;  ///< no object is lower than this [m], > 0
 };
 
-/** The cells that no opening cuts off: one flag per cell point.
+/** The cells that no opening cuts off.
  *
  * Grey openings with windows that grow to the largest object follow one another; a cell that one of them
  * lowers by more than the slope times the window's half width is an object (progressive morphological filter,
  * Zhang et al. 2003; threshold as in SMRF, Pingel et al. 2013). Unlike a low-pass surface an opening keeps
- * the edge of a terrace that is wider than the largest object. O(cells) for each window.
+ * the edge of a terrace that is wider than the largest object. O(cells log(window)) for each window.
+ *
+ * \param elevation cells, the empty ones filled
  */
-std::vector<bool> openedGround(const CellPoints& points, const GridGeometry& cells,
-                               const OpeningParameters& parameters);
+Mask openedGround(const ElevationGrid& elevation, const OpeningParameters& parameters);
 
 }  // namespace pcl_fft_ground::core
