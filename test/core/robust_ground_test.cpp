@@ -205,6 +205,29 @@ TEST(RobustGround, DoesNotClimbOnCrowdedObjects) {
   EXPECT_LT(wrong, labels.size() / 100);
 }
 
+TEST(RobustGround, DoesNotClimbOnStonesOnUndulatingGround) {
+  std::mt19937 random(13);
+  std::vector<Eigen::Array4d> stones;  // x, y, radius, height
+  for (int n = 0; n < 75; ++n)
+    stones.emplace_back(uniform(random, 0, 4), uniform(random, 0, 4), uniform(random, 0.08, 0.34),
+                        uniform(random, 0.1, 0.4));
+  std::vector<double> above;  // the ground
+  const auto height = [&](double x, double y) {
+    above.push_back(0);
+    for (const Eigen::Array4d& s : stones) {
+      const double inside = 1 - (std::pow(x - s[0], 2) + std::pow(y - s[1], 2)) / (s[2] * s[2]);
+      if (inside > 0) above.back() = std::max(above.back(), s[3] * std::sqrt(inside));
+    }
+    return 0.08 * std::sin(5.2 * x) * std::sin(4.8 * y) + above.back() + noise(random);
+  };
+  const Points points = scatteredOn(150000, 4, 4, height, random);
+  const Labels labels = labelRobust(points, groundOf(points, largestObject(1))).labels;
+  std::size_t wrong = 0;
+  for (std::size_t n = 0; n < labels.size(); ++n)
+    if (above[n] == 0 ? labels[n] == Label::OBJECT : above[n] > 0.03 && labels[n] == Label::GROUND) ++wrong;
+  EXPECT_LT(wrong, labels.size() / 50);
+}
+
 TEST(RobustGround, CountsDeepOutliersApart) {
   BoxOnSlope scene(9);
   for (Eigen::Index n = 0; n < 100; ++n) scene.points(2, 1000 * n) -= 5;

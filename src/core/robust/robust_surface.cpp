@@ -85,7 +85,10 @@ void RobustSurface::startBelowObjects(double wavelength) {
   fit_->startFrom(lowerEnvelope(samples_, grid_.geometry(), wavelength, *fit_));
   findResiduals();
   spread_ = lowestMode({residuals_.begin(), residuals_.end()}, 0.5 * wavelength);
-  spread_.scale = std::max({spread_.scale, floors_.least, floors_.slope * wavelength / GROUND_SCALES});
+  // Where objects cover whole blocks the envelope lies on them, and what lies below it is no noise.
+  constexpr double MOST_FLOORS = 1.3;
+  const double floor = std::max(floors_.least, floors_.slope * wavelength / GROUND_SCALES);
+  spread_.scale = std::clamp(spread_.scale, floor, MOST_FLOORS * floor);
   takeSamples(SAMPLES_PER_CELL);
 }
 
