@@ -14,6 +14,11 @@ namespace pcl_fft_ground::core {
  * repeat (concentration steps of the minimum covariance determinant, Rousseeuw and Van Driessen 1999). Walls,
  * tall objects and outliers stay outside of the slab, and narrow strips do not tip over.
  *
+ * A narrow strip (less than half as broad as long) can lie askew on objects that have more than half of the
+ * points. As they stand on the ground, the same steps go on there with the lowest 30 % of the points; their
+ * normal is taken where it leans by more than 5 degrees from the first one and they lie in a slab less than
+ * 0.6 times as thick.
+ *
  * \param given direction towards which the normal is turned, a unit vector
  * \return nothing where that half is no flat sheet (spread along the normal above a tenth of that along the
  * next axis), or where the normal leans by more than 45 degrees from the given direction
