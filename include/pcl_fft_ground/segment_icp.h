@@ -73,6 +73,11 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   void setMinScore(double score);
   double getMinScore() const { return parameters_.min_score; }
 
+  /// Precision asked for [m], above 0: what is predicted to be worse horizontally, or leaves more than this
+  /// between the surfaces, is refused. Default 0.05.
+  void setMaxSigma(double sigma);
+  double getMaxSigma() const { return parameters_.max_sigma; }
+
   /// What is done where the segments do not suffice. Default: dense ICP over the overlap.
   void setFallback(core::Fallback fallback) { parameters_.fallback = fallback; }
   core::Fallback getFallback() const { return parameters_.fallback; }

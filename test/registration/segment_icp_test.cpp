@@ -107,6 +107,7 @@ TEST_F(SegmentICPTest, TheFitnessScoreBuildsItsTreeWhenAskedFor) {
 TEST_F(SegmentICPTest, RejectsParametersOutOfRange) {
   EXPECT_THROW(icp_.setMinMatches(0), pcl::PCLException);
   EXPECT_THROW(icp_.setMinScore(1.5), pcl::PCLException);
+  EXPECT_THROW(icp_.setMaxSigma(0), pcl::PCLException);
   EXPECT_THROW(icp_.setUpDirection(Eigen::Vector3d::Zero()), pcl::PCLException);
 }
 

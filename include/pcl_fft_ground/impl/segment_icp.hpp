@@ -88,6 +88,14 @@ void SegmentICP<PointSource, PointTarget>::setMinScore(double score) {
 }
 
 template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setMaxSigma(double sigma) {
+  if (!(sigma > 0 && std::isfinite(sigma)))
+    throw pcl::PCLException("SegmentICP: largest deviation is " + std::to_string(sigma) +
+                            " m, must be a finite number above 0");
+  parameters_.max_sigma = sigma;
+}
+
+template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::setUpDirection(const Eigen::Vector3d& up) {
   const double length = up.stableNorm();
   if (!up.allFinite() || !(length > 0))
