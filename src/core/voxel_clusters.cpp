@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "alignment/voxel_set.h"
+#include "voxel_set.h"
 
 namespace pcl_fft_ground::core {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "alignment/voxel_means.h"
-#include "alignment/voxel_set.h"
 #include "parameter_check.h"
 #include "pcl_fft_ground/core/voxel_clusters.h"
+#include "voxel_set.h"
 
 namespace pcl_fft_ground::core {
 namespace {

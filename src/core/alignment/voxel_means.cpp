@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "alignment/voxel_set.h"
+#include "voxel_set.h"
 
 namespace pcl_fft_ground::core {
 

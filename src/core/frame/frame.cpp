@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "frame/hull_filter.h"
+#include "frame/robust_up.h"
 #include "pcl_fft_ground/core/convex_hull.h"
-#include "robust/robust_up.h"
 
 namespace pcl_fft_ground::core {
 namespace {

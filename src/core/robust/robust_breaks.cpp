@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "robust/radix_sort.h"
+#include "radix_sort.h"
 #include "robust/robust_openings.h"
 #include "robust/robust_regions.h"
 #include "robust/robust_scale.h"

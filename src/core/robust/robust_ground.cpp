@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "frame/point_sample.h"
 #include "robust/robust_breaks.h"
 #include "robust/robust_choices.h"
 #include "robust/robust_openings.h"
-#include "robust/robust_sample.h"
 #include "robust/robust_surface.h"
 
 namespace pcl_fft_ground::core {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "robust/radix_sort.h"
+#include "radix_sort.h"
 
 namespace pcl_fft_ground::core {
 

@@ -1,11 +1,11 @@
-#include "robust/robust_up.h"
+#include "frame/robust_up.h"
 
 #include <Eigen/Eigenvalues>
 #include <vector>
 
+#include "frame/point_sample.h"
 #include "pcl_fft_ground/core/point_statistics.h"
-#include "robust/radix_sort.h"
-#include "robust/robust_sample.h"
+#include "radix_sort.h"
 
 namespace pcl_fft_ground::core {
 namespace {

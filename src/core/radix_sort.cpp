@@ -1,4 +1,4 @@
-#include "robust/radix_sort.h"
+#include "radix_sort.h"
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "robust/robust_sample.h"
+#include "frame/point_sample.h"
 
 #include <algorithm>
 #include <cstdint>
