@@ -38,7 +38,7 @@ TEST(RobustRegions, DilationAndErosionLookAtSquares) {
   }
 }
 
-TEST(RobustRegions, KeepsLongRegionsThatHoldACore) {
+TEST(RobustRegions, KeepsLongAndLargeRegionsThatHoldACore) {
   Mask mask = Mask::Constant(20, 20, false);
   mask.block(1, 1, 3, 8).setConstant(true);  // long, connected at a corner with the next
   mask(4, 9) = true;
@@ -46,10 +46,12 @@ TEST(RobustRegions, KeepsLongRegionsThatHoldACore) {
   mask.block(15, 15, 3, 3).setConstant(true);  // short
   Mask cores = Mask::Constant(20, 20, false);
   cores(2, 2) = cores(16, 16) = cores(0, 19) = true;
-  const Mask kept = regionsAround(mask, cores, 9.5);  // the diagonals: 9.8, 9.2 and 4.2
+  const Mask kept = regionsAround(mask, cores, {9.5});  // the diagonals: 9.8, 9.2 and 4.2
   EXPECT_EQ(kept.count(), 3 * 8 + 1);
   EXPECT_TRUE(kept(4, 9));
-  EXPECT_EQ(regionsAround(mask, cores, 0).count(), 3 * 8 + 1 + 3 * 3);
+  EXPECT_EQ(regionsAround(mask, cores, {0}).count(), 3 * 8 + 1 + 3 * 3);
+  EXPECT_EQ(regionsAround(mask, cores, {0, 25}).count(), 3 * 8 + 1);
+  EXPECT_FALSE(regionsAround(mask, cores, {0, 26}).any());
 }
 
 }  // namespace

@@ -19,11 +19,12 @@ Mask joined(const Mask& chosen, const Mask& observed) {
   return chosen || (closed && !observed);
 }
 
-/// The regions of a mask that are longer than an object and not thin.
+/// The regions of a mask that are longer and cover more than the largest object, and are not thin.
 Mask largeRegions(const Mask& mask, double object_cells) {
   constexpr double LONGER = 1.25, BREADTH = 0.2;  // of the largest object
   const auto reach = static_cast<Eigen::Index>(std::round(0.5 * (BREADTH * object_cells - 1)));
-  return regionsAround(mask, eroded(mask, std::max<Eigen::Index>(reach, 0)), LONGER * object_cells);
+  return regionsAround(mask, eroded(mask, std::max<Eigen::Index>(reach, 0)),
+                       {LONGER * object_cells, object_cells * object_cells});
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ Mask groundAboveBreaks(const ElevationGrid& elevation, const Mask& ground, const
   const Mask large = largeRegions(joined(gentle, observed), object_cells);
   if (!large.any()) return none;
   const Mask steep = standing(STEEP) && !(gentle && large);
-  const Mask beside = regionsAround(joined(steep, observed), dilated(large, BESIDE), object_cells);
+  const Mask beside = regionsAround(joined(steep, observed), dilated(large, BESIDE), {object_cells});
   return (gentle && large) || (steep && beside);
 }
 

@@ -60,13 +60,14 @@ Mask eroded(const Mask& mask, Eigen::Index reach) {
   return result;
 }
 
-Mask regionsAround(Mask mask, const Mask& cores, double least_length) {
+Mask regionsAround(Mask mask, const Mask& cores, const RegionSize& size) {
   Mask kept = Mask::Constant(mask.rows(), mask.cols(), false);
   for (Eigen::Index j = 0; j < mask.cols(); ++j)
     for (Eigen::Index i = 0; i < mask.rows(); ++i) {
       if (!mask(i, j) || !cores(i, j)) continue;
       const Region region = takeRegion(mask, {i, j});
-      if (region.length < least_length) continue;
+      const auto area = static_cast<double>(region.cells.size());
+      if (region.length < size.least_length || area < size.least_area) continue;
       for (const auto& [row, col] : region.cells) kept(row, col) = true;
     }
   return kept;

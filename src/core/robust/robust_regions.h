@@ -11,8 +11,14 @@ Mask dilated(const Mask& mask, Eigen::Index reach);
 /// are.
 Mask eroded(const Mask& mask, Eigen::Index reach);
 
-/** The regions of a mask, connected along sides and corners, that hold a cell of `cores` and whose bounding
- * box has a diagonal of at least `least_length` cells. O(cells). */
-Mask regionsAround(Mask mask, const Mask& cores, double least_length);
+/// How large a region has to be.
+struct RegionSize {
+  double least_length;    ///< of the diagonal of its bounding box [cells]
+  double least_area = 1;  ///< [cells]
+};
+
+/** The regions of a mask, connected along sides and corners, that hold a cell of `cores` and are large
+ * enough. O(cells). */
+Mask regionsAround(Mask mask, const Mask& cores, const RegionSize& size);
 
 }  // namespace pcl_fft_ground::core
