@@ -26,6 +26,9 @@ struct Request {
   std::size_t points = 200000;
   double least_overlap = 0.3;
   bool without_fallback = false;
+  std::string sites = "wreck,pipes";
+
+  bool includes(const std::string& site) const { return sites.find(site) != std::string::npos; }
 };
 
 /// CPU time of building the tree of 600,000 points, time and again: the machine's speed may change.
@@ -139,19 +142,25 @@ void benchmarkDifferentPlaces(const std::string& name, const std::vector<TrialSu
   print(row);
 }
 
+/// All conditions of one kind of site. \return its surveys without drift
+std::vector<TrialSurvey> benchmarkKind(const std::string& name, core::SceneKind site, const Request& request,
+                                       const TreeBuild& tree) {
+  if (!request.includes(name)) return {};
+  std::vector<TrialSurvey> surveys = makeSurveys(site, 0, request);
+  benchmarkSite(name, surveys, request, tree);
+  benchmarkDifferentPlaces("different " + name, surveys, surveys, request, tree);
+  benchmarkHardSite(name, site, request, tree);
+  return surveys;
+}
+
 void benchmarkAll(const Request& request) {
   const TreeBuild tree;
   std::printf("%-32s %5s %7s %5s %6s %6s %5s %7s %7s %9s\n", "", "pairs", "aligned", "dense", "%", ">= %",
               "wrong", "median", "90 %", "time/tree");
-  const std::vector<TrialSurvey> wreck = makeSurveys(core::SceneKind::WRECK, 0, request);
-  benchmarkSite("wreck", wreck, request, tree);
-  benchmarkHardSite("wreck", core::SceneKind::WRECK, request, tree);
-  const std::vector<TrialSurvey> pipes = makeSurveys(core::SceneKind::PIPES, 0, request);
-  benchmarkSite("pipes", pipes, request, tree);
-  benchmarkHardSite("pipes", core::SceneKind::PIPES, request, tree);
-  benchmarkDifferentPlaces("different wrecks", wreck, wreck, request, tree);
-  benchmarkDifferentPlaces("different pipes", pipes, pipes, request, tree);
-  benchmarkDifferentPlaces("pipes on wrecks", pipes, wreck, request, tree);
+  const auto wreck = benchmarkKind("wreck", core::SceneKind::WRECK, request, tree);
+  const auto pipes = benchmarkKind("pipes", core::SceneKind::PIPES, request, tree);
+  if (!wreck.empty() && !pipes.empty())
+    benchmarkDifferentPlaces("pipes on wreck", pipes, wreck, request, tree);
 }
 
 }  // namespace
@@ -166,6 +175,7 @@ int main(int argc, char** argv) try {
   add("points", po::value(&request.points)->default_value(request.points), "points of each sub-map");
   add("least-overlap", po::value(&request.least_overlap)->default_value(request.least_overlap, "0.3"),
       "pairs of which both see at least this share of the smaller sub-map, in (0, 1]");
+  add("sites", po::value(&request.sites)->default_value(request.sites), "wreck, pipes or both");
   add("segments-only", po::bool_switch(&request.without_fallback), "without the dense fallback");
   add("help", "show this text");
   po::variables_map values;
