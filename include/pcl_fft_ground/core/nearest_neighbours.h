@@ -25,7 +25,7 @@ class NearestNeighbours {
   virtual Neighbour nearest(const Eigen::Vector3f& query, float reach) const = 0;
 
   /// All points within `radius` [m], in no particular but always the same order.
-  /// \param[out] found columns of the points; old content is discarded, its memory is used again
+  /// Their columns are in `found`, whose old content is discarded and whose memory is used again.
   virtual void within(const Eigen::Vector3f& query, float radius, std::vector<Eigen::Index>& found) const = 0;
 };
 

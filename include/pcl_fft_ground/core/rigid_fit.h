@@ -10,7 +10,7 @@ namespace pcl_fft_ground::core {
 /** Least-squares turn about the vertical and shift that bring points on to their partners, in closed form. */
 class YawFit {
  public:
-  /// \param weight >= 0
+  /// The weight is at least 0.
   void add(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
     weight_ += weight;
     from_ += weight * from;
@@ -44,10 +44,10 @@ class MotionFit {
  public:
   explicit MotionFit(const Eigen::Vector3d& centre) : centre_(centre) {}
 
-  /// Distance of `from` to the plane through `to` with a unit `normal`. \param weight >= 0
+  /// Distance of `from` to the plane through `to` with a unit `normal`. The weight is at least 0.
   PCL_FFT_GROUND_CORE_EXPORT void addToPlane(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                              const Eigen::Vector3d& normal, double weight);
-  /// Distance of `from` to `to`. \param weight >= 0
+  /// Distance of `from` to `to`. The weight is at least 0.
   PCL_FFT_GROUND_CORE_EXPORT void addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                              double weight);
 
