@@ -5,9 +5,12 @@
 #include <pcl/point_types.h>
 
 #include <boost/program_options.hpp>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,7 +30,10 @@ struct Request {
   double least_overlap = 0.3;
   bool without_fallback = false;
   std::string sites = "wreck,pipes";
+  std::string only;
+  std::string csv;
 
+  bool wants(const std::string& row) const { return row.find(only) != std::string::npos; }
   bool includes(const std::string& site) const { return sites.find(site) != std::string::npos; }
 };
 
@@ -59,23 +65,56 @@ struct Row {
   std::vector<double> tree_seconds = {};
 };
 
-void runAll(const std::vector<Trial>& trials, const Request& request, const TreeBuild& tree, Row& row) {
+/// A line for each trial, in a file if one is named.
+class TrialFile {
+ public:
+  explicit TrialFile(const std::string& path) {
+    if (path.empty()) return;
+    file_.open(path);
+    if (!file_) throw std::runtime_error(path + ": cannot be written");
+    file_ << "row,pair,accepted,method,error_m,turn_deg,wrong,score,overlap,matches,sigma_m,refusal\n";
+  }
+
+  void add(const std::string& row, const std::string& pair, const TrialOutcome& outcome) {
+    const core::Alignment& a = outcome.alignment;
+    file_ << '"' << row << "\"," << pair << ',' << a.accepted << ','
+          << static_cast<int>(a.method) << ',' << outcome.error << ',' << outcome.turn << ','
+          << outcome.wrong() << ',' << a.score << ',' << a.overlap << ',' << a.matches.size() << ','
+          << std::sqrt(a.covariance(0, 0) + a.covariance(1, 1)) << ",\"" << a.refusal << "\"\n";
+  }
+
+ private:
+  std::ofstream file_;
+};
+
+/// What the rows are made from and where their trials are listed.
+struct Benchmark {
+  Request request;
+  TreeBuild tree = {};
+  TrialFile file = TrialFile(request.csv);
+};
+
+void runAll(const std::vector<Trial>& trials, Benchmark& benchmark, Row& row) {
   constexpr std::size_t TRIALS_PER_TREE = 8;
+  if (!benchmark.request.wants(row.name)) return;
   core::AlignmentParameters parameters;
   parameters.gates = core::gatesOf(row.mode);
-  if (request.without_fallback) parameters.fallback = core::Fallback::NONE;
+  if (benchmark.request.without_fallback) parameters.fallback = core::Fallback::NONE;
   for (const Trial& trial : trials) {
-    if (row.results.trials % TRIALS_PER_TREE == 0) row.tree_seconds.push_back(tree.seconds());
-    run(trial, parameters, row.results);
+    if (row.results.trials % TRIALS_PER_TREE == 0) row.tree_seconds.push_back(benchmark.tree.seconds());
+    const TrialOutcome outcome = run(trial, parameters);
+    row.results.add(outcome);
+    benchmark.file.add(row.name, trial.name, outcome);
   }
 }
 
 void print(const Row& row) {
   const TrialResults& r = row.results;
+  if (r.trials == 0) return;
   const auto millimetres = [&](double share) { return 1e3 * cli::quantileOf(r.errors, share).value_or(0); };
   const double ratio =
       cli::quantileOf(r.seconds, 0.5).value_or(0) / cli::quantileOf(row.tree_seconds, 0.5).value_or(1);
-  const double share = r.trials == 0 ? 0 : static_cast<double>(r.accepted) / static_cast<double>(r.trials);
+  const double share = static_cast<double>(r.accepted) / static_cast<double>(r.trials);
   std::printf("%-32s %5zu %7zu %5zu %6.1f %6.1f %5zu %7.2f %7.2f %9.2f\n", row.name.c_str(), r.trials,
               r.accepted, r.dense, 100 * share, 100 * cli::lowerBound(r.accepted, r.trials), r.wrong,
               millimetres(0.5), millimetres(0.9), ratio);
@@ -107,60 +146,57 @@ std::vector<Trial> thinned(std::vector<Trial> trials, const TrialSurvey& survey)
 }
 
 /// All rows of one site.
-void benchmarkSite(const std::string& name, const std::vector<TrialSurvey>& surveys, const Request& request,
-                   const TreeBuild& tree) {
+void benchmarkSite(const std::string& name, const std::vector<TrialSurvey>& surveys, Benchmark& benchmark) {
   Row navigation{name}, thin{name + ", one thinned to 10 %"};
   Row shifted{name + ", 2 m off", core::SearchMode::WIDE};
   Row turned{name + ", 1 m and 20 deg off", core::SearchMode::WIDE};
   for (std::size_t n = 0; n < surveys.size(); ++n) {
-    const std::vector<Trial> pairs = overlappingPairs(surveys[n], request.least_overlap);
+    const std::vector<Trial> pairs = overlappingPairs(surveys[n], benchmark.request.least_overlap);
     const auto seed = static_cast<unsigned>(n + 1);
-    runAll(pairs, request, tree, navigation);
-    runAll(thinned(pairs, surveys[n]), request, tree, thin);
-    runAll(misguided(pairs, {2, 0}, seed), request, tree, shifted);
-    runAll(misguided(pairs, {1, 20}, seed), request, tree, turned);
+    runAll(pairs, benchmark, navigation);
+    runAll(thinned(pairs, surveys[n]), benchmark, thin);
+    runAll(misguided(pairs, {2, 0}, seed), benchmark, shifted);
+    runAll(misguided(pairs, {1, 20}, seed), benchmark, turned);
   }
   for (const Row* row : {&navigation, &thin, &shifted, &turned}) print(*row);
 }
 
-void benchmarkHardSite(const std::string& name, core::SceneKind site, const Request& request,
-                       const TreeBuild& tree) {
+void benchmarkHardSite(const std::string& name, core::SceneKind site, Benchmark& benchmark) {
   constexpr double DRIFT = 0.01;
   Row row{name + ", hard"};
-  for (const TrialSurvey& survey : makeSurveys(site, DRIFT, request))
-    runAll(overlappingPairs(survey, request.least_overlap), request, tree, row);
+  if (!benchmark.request.wants(row.name)) return;
+  for (const TrialSurvey& survey : makeSurveys(site, DRIFT, benchmark.request))
+    runAll(overlappingPairs(survey, benchmark.request.least_overlap), benchmark, row);
   print(row);
 }
 
 void benchmarkDifferentPlaces(const std::string& name, const std::vector<TrialSurvey>& moving,
-                              const std::vector<TrialSurvey>& reference, const Request& request,
-                              const TreeBuild& tree) {
+                              const std::vector<TrialSurvey>& reference, Benchmark& benchmark) {
   Row row{name};
   for (std::size_t n = 0; n < moving.size(); ++n)
     runAll(differentPlaces(moving[n], reference[(n + 1) % reference.size()], static_cast<unsigned>(n + 1)),
-           request, tree, row);
+           benchmark, row);
   print(row);
 }
 
 /// All conditions of one kind of site. \return its surveys without drift
-std::vector<TrialSurvey> benchmarkKind(const std::string& name, core::SceneKind site, const Request& request,
-                                       const TreeBuild& tree) {
-  if (!request.includes(name)) return {};
-  std::vector<TrialSurvey> surveys = makeSurveys(site, 0, request);
-  benchmarkSite(name, surveys, request, tree);
-  benchmarkDifferentPlaces("different " + name, surveys, surveys, request, tree);
-  benchmarkHardSite(name, site, request, tree);
+std::vector<TrialSurvey> benchmarkKind(const std::string& name, core::SceneKind site, Benchmark& benchmark) {
+  if (!benchmark.request.includes(name)) return {};
+  std::vector<TrialSurvey> surveys = makeSurveys(site, 0, benchmark.request);
+  benchmarkSite(name, surveys, benchmark);
+  benchmarkDifferentPlaces("different " + name, surveys, surveys, benchmark);
+  benchmarkHardSite(name, site, benchmark);
   return surveys;
 }
 
 void benchmarkAll(const Request& request) {
-  const TreeBuild tree;
+  Benchmark benchmark{request};
   std::printf("%-32s %5s %7s %5s %6s %6s %5s %7s %7s %9s\n", "", "pairs", "aligned", "dense", "%", ">= %",
               "wrong", "median", "90 %", "time/tree");
-  const auto wreck = benchmarkKind("wreck", core::SceneKind::WRECK, request, tree);
-  const auto pipes = benchmarkKind("pipes", core::SceneKind::PIPES, request, tree);
+  const auto wreck = benchmarkKind("wreck", core::SceneKind::WRECK, benchmark);
+  const auto pipes = benchmarkKind("pipes", core::SceneKind::PIPES, benchmark);
   if (!wreck.empty() && !pipes.empty())
-    benchmarkDifferentPlaces("pipes on wreck", pipes, wreck, request, tree);
+    benchmarkDifferentPlaces("pipes on wreck", pipes, wreck, benchmark);
 }
 
 }  // namespace
@@ -176,6 +212,8 @@ int main(int argc, char** argv) try {
   add("least-overlap", po::value(&request.least_overlap)->default_value(request.least_overlap, "0.3"),
       "pairs of which both see at least this share of the smaller sub-map, in (0, 1]");
   add("sites", po::value(&request.sites)->default_value(request.sites), "wreck, pipes or both");
+  add("only", po::value(&request.only)->default_value(""), "only rows with this in their name, such as hard");
+  add("csv", po::value(&request.csv)->value_name("FILE"), "writes a line for each pair");
   add("segments-only", po::bool_switch(&request.without_fallback), "without the dense fallback");
   add("help", "show this text");
   po::variables_map values;

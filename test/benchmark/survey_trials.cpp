@@ -59,7 +59,7 @@ TrialSurvey makeSurvey(const core::SurveyParameters& parameters) {
   TrialSurvey survey;
   for (std::size_t n = 0; n < simulation.size(); ++n) {
     const core::SimulatedSubmap submap = simulation.submap(n);
-    survey.push_back({segmentsOf(submap.scan.points), segmentsOf(everyTenth(submap.scan.points)),
+    survey.push_back({std::to_string(parameters.seed) + "/" + std::to_string(n), segmentsOf(submap.scan.points), segmentsOf(everyTenth(submap.scan.points)),
                       submap.scan.world_from_scan, submap.world_from_navigation});
   }
   return survey;
@@ -76,7 +76,7 @@ std::vector<Trial> overlappingPairs(const TrialSurvey& survey, double least_over
   for (const core::SubmapPair& pair : core::otherOverlappingPairs(coverages, poses, {}, least_overlap)) {
     const TrialScan& moving = survey[pair.moving];
     const TrialScan& reference = survey[pair.reference];
-    trials.push_back({&moving.segments, &reference.segments,
+    trials.push_back({moving.name + " on " + reference.name, &moving.segments, &reference.segments,
                       reference.world_from_navigation.inverse() * moving.world_from_navigation,
                       reference.world_from_scan.inverse() * moving.world_from_scan});
   }
@@ -102,25 +102,36 @@ std::vector<Trial> differentPlaces(const TrialSurvey& moving, const TrialSurvey&
   for (std::size_t n = 0; n < 2 * moving.size(); ++n) {
     const double x = uniform(random, -SHIFT, SHIFT), y = uniform(random, -SHIFT / 2, SHIFT / 2);
     const Eigen::Isometry3d guess = Eigen::Translation3d(x, y, 0) * turned(uniform(random, -TURN, TURN));
-    trials.push_back(
-        {&moving[n / 2].segments, &reference[(3 * n + 1) % reference.size()].segments, guess, guess});
+    const TrialScan& above = moving[n / 2];
+    const TrialScan& below = reference[(3 * n + 1) % reference.size()];
+    trials.push_back({above.name + " on " + below.name, &above.segments, &below.segments, guess, guess});
   }
   return trials;
 }
 
-void run(const Trial& trial, const core::AlignmentParameters& parameters, TrialResults& results) {
-  constexpr double WRONG_BY = 0.05, WRONG_TURN = 2 * EIGEN_PI / 180;
+bool TrialOutcome::wrong() const {
+  constexpr double WRONG_BY = 0.05, WRONG_TURN = 2;
+  return alignment.accepted && (error > WRONG_BY || turn > WRONG_TURN);
+}
+
+TrialOutcome run(const Trial& trial, const core::AlignmentParameters& parameters) {
+  TrialOutcome outcome;
   const std::clock_t begun = std::clock();
-  const core::Alignment alignment =
-      core::alignScans(*trial.moving, *trial.reference, trial.guess, parameters);
-  results.seconds.push_back(static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC);
-  ++results.trials;
-  if (!alignment.accepted) return;
+  outcome.alignment = core::alignScans(*trial.moving, *trial.reference, trial.guess, parameters);
+  outcome.seconds = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+  const Eigen::Isometry3d& found = outcome.alignment.reference_from_moving;
   const Eigen::Vector3d middle = middleOf(trial.truth);
-  const double error = (alignment.reference_from_moving * middle - trial.truth * middle).norm();
-  const Eigen::AngleAxisd turn(trial.truth.linear().transpose() * alignment.reference_from_moving.linear());
-  ++results.accepted;
-  if (alignment.method == core::AlignmentMethod::DENSE) ++results.dense;
-  if (error > WRONG_BY || turn.angle() > WRONG_TURN) ++results.wrong;
-  results.errors.push_back(error);
+  outcome.error = (found * middle - trial.truth * middle).norm();
+  outcome.turn = Eigen::AngleAxisd(trial.truth.linear().transpose() * found.linear()).angle() * 180 / EIGEN_PI;
+  return outcome;
+}
+
+void TrialResults::add(const TrialOutcome& outcome) {
+  ++trials;
+  seconds.push_back(outcome.seconds);
+  if (!outcome.alignment.accepted) return;
+  ++accepted;
+  if (outcome.alignment.method == core::AlignmentMethod::DENSE) ++dense;
+  if (outcome.wrong()) ++wrong;
+  errors.push_back(outcome.error);
 }

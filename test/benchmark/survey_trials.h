@@ -9,6 +9,7 @@
 
 /// A sub-map of a simulated survey as alignment sees it, with its true pose.
 struct TrialScan {
+  std::string name;                             ///< seed and number
   pcl_fft_ground::core::ScanSegments segments;  ///< of all points
   pcl_fft_ground::core::ScanSegments thinned;   ///< of every tenth point
   Eigen::Isometry3d world_from_scan = Eigen::Isometry3d::Identity();
@@ -28,6 +29,7 @@ struct GuessError {
 
 /// Two scans to be aligned.
 struct Trial {
+  std::string name;  ///< of both scans
   const pcl_fft_ground::core::ScanSegments* moving;
   const pcl_fft_ground::core::ScanSegments* reference;
   Eigen::Isometry3d guess;  ///< reference_from_moving
@@ -44,16 +46,27 @@ std::vector<Trial> misguided(std::vector<Trial> trials, const GuessError& error,
 /// Each sub-map of a survey laid over two of another one, up to a metre and 6 degrees from lying just on it.
 std::vector<Trial> differentPlaces(const TrialSurvey& moving, const TrialSurvey& reference, unsigned seed);
 
-/// What came of trials.
+/// What came of a trial.
+struct TrialOutcome {
+  pcl_fft_ground::core::Alignment alignment;
+  double seconds = 0;  ///< CPU time
+  double error = 0;    ///< amid the overlap [m]
+  double turn = 0;     ///< off the true transform [degrees]
+
+  bool wrong() const;  ///< accepted, and off by more than 5 cm or 2 degrees
+};
+
+/// Aligns one pair.
+TrialOutcome run(const Trial& trial, const pcl_fft_ground::core::AlignmentParameters& parameters);
+
+/// What came of several trials.
 struct TrialResults {
   std::size_t trials = 0;
   std::size_t accepted = 0;
   std::size_t dense = 0;        ///< of the accepted, by the dense fallback
-  std::size_t wrong = 0;        ///< of the accepted, by more than 5 cm or 2 degrees
-  std::vector<double> errors;   ///< of the accepted, amid the overlap [m]
+  std::size_t wrong = 0;        ///< of the accepted
+  std::vector<double> errors;   ///< of the accepted [m]
   std::vector<double> seconds;  ///< CPU time of each alignment
-};
 
-/// Aligns one pair and adds what came of it.
-void run(const Trial& trial, const pcl_fft_ground::core::AlignmentParameters& parameters,
-         TrialResults& results);
+  void add(const TrialOutcome& outcome);
+};

@@ -89,7 +89,7 @@ po::options_description alignmentOptions(const char* fallback) {
       "their centroids and sizes only");
   add("fallback", word(fallback), "where segments do not suffice: dense (ICP of the overlap, gated) or none");
   add("min-matches", count(), "N_seg: fewer matched segments give no alignment (3)");
-  add("min-score", number("SHARE"), "least share of object points that agree, up to 1 (0.6)");
+  add("min-score", number("SHARE"), "least share of object points that agree, up to 1 (0.8)");
   add("max-sigma", number("M"),
       "largest predicted horizontal deviation, and largest distance left between the surfaces [m] (0.05)");
   add("min-extent", number("M"), "size of the smallest segment [m] (0.1)");
