@@ -8,7 +8,9 @@
 namespace pcl_fft_ground {
 
 /** Search by `pcl::KdTreeFLANN`: for points that are no surface seen from above.
- * To be given to SegmentICP::setNeighbourSearch(). \param spacing is not used
+ * To be given to SegmentICP::setNeighbourSearch().
+ *
+ * \param spacing is not used
  */
 PCL_FFT_GROUND_REGISTRATION_EXPORT std::unique_ptr<core::NearestNeighbours> kdTreeNeighbours(
     const core::PointsView& points, double spacing);

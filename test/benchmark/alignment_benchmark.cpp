@@ -77,10 +77,10 @@ class TrialFile {
 
   void add(const std::string& row, const std::string& pair, const TrialOutcome& outcome) {
     const core::Alignment& a = outcome.alignment;
-    file_ << '"' << row << "\"," << pair << ',' << a.accepted << ','
-          << static_cast<int>(a.method) << ',' << outcome.error << ',' << outcome.turn << ','
-          << outcome.wrong() << ',' << a.score << ',' << a.overlap << ',' << a.matches.size() << ','
-          << std::sqrt(a.covariance(0, 0) + a.covariance(1, 1)) << ",\"" << a.refusal << "\"\n";
+    file_ << '"' << row << "\"," << pair << ',' << a.accepted << ',' << static_cast<int>(a.method) << ','
+          << outcome.error << ',' << outcome.turn << ',' << outcome.wrong() << ',' << a.score << ','
+          << a.overlap << ',' << a.matches.size() << ',' << std::sqrt(a.covariance(0, 0) + a.covariance(1, 1))
+          << ",\"" << a.refusal << "\"\n";
   }
 
  private:
@@ -195,8 +195,7 @@ void benchmarkAll(const Request& request) {
               "wrong", "median", "90 %", "time/tree");
   const auto wreck = benchmarkKind("wreck", core::SceneKind::WRECK, benchmark);
   const auto pipes = benchmarkKind("pipes", core::SceneKind::PIPES, benchmark);
-  if (!wreck.empty() && !pipes.empty())
-    benchmarkDifferentPlaces("pipes on wreck", pipes, wreck, benchmark);
+  if (!wreck.empty() && !pipes.empty()) benchmarkDifferentPlaces("pipes on wreck", pipes, wreck, benchmark);
 }
 
 }  // namespace

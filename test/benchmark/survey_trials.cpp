@@ -59,7 +59,8 @@ TrialSurvey makeSurvey(const core::SurveyParameters& parameters) {
   TrialSurvey survey;
   for (std::size_t n = 0; n < simulation.size(); ++n) {
     const core::SimulatedSubmap submap = simulation.submap(n);
-    survey.push_back({std::to_string(parameters.seed) + "/" + std::to_string(n), segmentsOf(submap.scan.points), segmentsOf(everyTenth(submap.scan.points)),
+    survey.push_back({std::to_string(parameters.seed) + "/" + std::to_string(n),
+                      segmentsOf(submap.scan.points), segmentsOf(everyTenth(submap.scan.points)),
                       submap.scan.world_from_scan, submap.world_from_navigation});
   }
   return survey;
@@ -122,7 +123,8 @@ TrialOutcome run(const Trial& trial, const core::AlignmentParameters& parameters
   const Eigen::Isometry3d& found = outcome.alignment.reference_from_moving;
   const Eigen::Vector3d middle = middleOf(trial.truth);
   outcome.error = (found * middle - trial.truth * middle).norm();
-  outcome.turn = Eigen::AngleAxisd(trial.truth.linear().transpose() * found.linear()).angle() * 180 / EIGEN_PI;
+  outcome.turn =
+      Eigen::AngleAxisd(trial.truth.linear().transpose() * found.linear()).angle() * 180 / EIGEN_PI;
   return outcome;
 }
 

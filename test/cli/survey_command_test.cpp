@@ -1,6 +1,7 @@
 #include "survey/survey_command.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -149,6 +150,38 @@ TEST_F(SurveyCommand, GoesOnWhereItWasBrokenOff) {
 
   survey({"--methods", "fft", "--quiet", "--min-matches", "4"});
   EXPECT_EQ(contentOf(outputOf("pairs.csv")).find("MARK"), std::string::npos);
+}
+
+TEST_F(SurveyCommand, SeveralFoldersMakeOneTable) {
+  const std::string other = pathOf("other");
+  std::filesystem::create_directory(other);
+  for (const char* file : {"/submap_00.pcd", "/submap_01.pcd", "/truth.csv"})
+    std::filesystem::copy_file(site_ + file, other + file);
+  survey({other, "--methods", "fft", "--quiet"});
+  const std::string name = std::filesystem::path(site_).filename().string();
+  const json together = json::parse(contentOf(outputOf("survey.json")));
+  const json whole = json::parse(contentOf(outputOf(name + "/survey.json")));
+  const json part = json::parse(contentOf(outputOf("other/survey.json")));
+  EXPECT_EQ(together["submaps"], 6);
+  EXPECT_EQ(together["surveys"][name], whole);
+  EXPECT_EQ(together["surveys"]["other"], part);
+  for (const char* count : {"overlapping", "aligned"})
+    EXPECT_EQ(together["accuracy"][0][count].get<int>(),
+              whole["accuracy"][0][count].get<int>() + part["accuracy"][0][count].get<int>());
+  const auto largestError = [](const json& report) {
+    return report["global"]["placements"]["global"]["errors"]["translation_max"].get<double>();
+  };
+  EXPECT_EQ(largestError(together), std::max(largestError(whole), largestError(part)));
+}
+
+TEST_F(SurveyCommand, RefusesFoldersOfTheSameName) {
+  try {
+    survey({site_ + "/."});
+    ADD_FAILURE() << "not refused";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("same name"), std::string::npos);
+  }
+  EXPECT_FALSE(hasOutput());
 }
 
 TEST_F(SurveyCommand, PaperTakesSmallSegmentsAndPlainMatching) {

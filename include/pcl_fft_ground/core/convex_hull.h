@@ -11,7 +11,8 @@ namespace pcl_fft_ground::core {
  *
  * \param points points [m] in any order, duplicates allowed
  * \return corners counter-clockwise from the lowest x (then the lowest y); collinear points are left out. One
- * corner for identical points, two for collinear ones, none for an empty set. \note O(n log n)
+ * corner for identical points, two for collinear ones, none for an empty set.
+ * \note O(n log n)
  */
 PCL_FFT_GROUND_CORE_EXPORT std::vector<Eigen::Vector2d> convexHull(std::vector<Eigen::Vector2d> points);
 

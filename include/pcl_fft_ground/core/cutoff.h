@@ -30,7 +30,8 @@ struct PeakParameters {
  * zero.
  *
  * \param magnitude magnitudes of all bins of a real grid, DC at (0, 0): bin (k, l) equals bin (rows - k, cols
- * - l) \return the peaks, both of each conjugate pair, by falling wavelength: sorted by radius, then l, then
+ * - l)
+ * \return the peaks, both of each conjugate pair, by falling wavelength: sorted by radius, then l, then
  * k
  */
 PCL_FFT_GROUND_CORE_EXPORT std::vector<SpectrumPeak> findSpectrumPeaks(Eigen::ArrayXXd magnitude,

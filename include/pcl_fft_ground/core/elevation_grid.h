@@ -40,7 +40,9 @@ constexpr double MAX_CELLS = 1e8;
 PCL_FFT_GROUND_CORE_EXPORT GridGeometry gridAround(const Bounds& bounds, double cell_size);
 
 /** The highest point of each cell; empty cells take the height of the nearest observed cell
- * (fillEmptyCells()). \param points points in the level frame, at least one, all inside of the grid
+ * (fillEmptyCells()).
+ *
+ * \param points points in the level frame, at least one, all inside of the grid
  */
 PCL_FFT_GROUND_CORE_EXPORT ElevationGrid rasteriseHighest(const PointsView& points,
                                                           const GridGeometry& geometry);

@@ -18,7 +18,9 @@ struct Spectrum {
 };
 
 /** Distance from DC of a bin as a ratio of the Nyquist range (eq. 2 with f_c = 1): sqrt((2 k / rows)^2 + (2 l
- * / cols)^2). \param k,l bin, in [0, rows) and [0, cols); bins beyond the middle count from the other end
+ * / cols)^2).
+ *
+ * \param k,l bin, in [0, rows) and [0, cols); bins beyond the middle count from the other end
  * \return ratio in [0, sqrt 2]
  */
 PCL_FFT_GROUND_CORE_EXPORT double binRadius(Eigen::Index k, Eigen::Index l, Eigen::Index rows,

@@ -16,7 +16,8 @@ namespace pcl_fft_ground::core {
  * \param points finite points
  * \param leaf_size side of a voxel [m], > 0
  * \return clusters of column numbers, ascending within a cluster; larger clusters first, equal ones by their
- * first point \note O(n) expected time; memory grows with the number of occupied voxels, not with the volume
+ * first point
+ * \note O(n) expected time; memory grows with the number of occupied voxels, not with the volume
  */
 PCL_FFT_GROUND_CORE_EXPORT std::vector<std::vector<Eigen::Index>> voxelClusters(const PointsView& points,
                                                                                 double leaf_size);

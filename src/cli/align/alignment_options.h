@@ -28,8 +28,10 @@ boost::program_options::options_description alignmentOptions(const char* fallbac
 AlignmentSettings alignmentSettings(const boost::program_options::variables_map& values);
 
 /** A segmenter for alignment. Methods that know no tolerance get one of 1 cm, unless the user or the paper's
- * version says otherwise: speckle above the ground would join all segments into one. \throws UsageError as
- * makeSegmenter() */
+ * version says otherwise: speckle above the ground would join all segments into one.
+ *
+ * \throws UsageError as makeSegmenter()
+ */
 Segmenter makeAlignmentSegmenter(const std::string& method,
                                  const boost::program_options::variables_map& values, Version version);
 

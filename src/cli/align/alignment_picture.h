@@ -22,8 +22,11 @@ struct PairImage {
 
 /** alignment.png, after the paper's Fig. 5: two scans from above before and after alignment. The reference is
  * blue, its segments turquoise; the moving scan red, its segments yellow; after alignment matched segments
- * are black. \param path of exactly the PNG file to write \throws WorkError naming the file, where it cannot
- * be written */
+ * are black.
+ *
+ * \param path of exactly the PNG file to write
+ * \throws WorkError naming the file, where it cannot be written
+ */
 void drawAlignment(const std::filesystem::path& path, const PairImage& image);
 
 }  // namespace pcl_fft_ground::cli

@@ -15,9 +15,13 @@ struct SiteCrispness {
 };
 
 /** Writes merged.pcd, all sub-maps as the global alignment places them (a point per cubic centimetre, with
- * the number of its sub-map), and the pictures site_before.png and site_after.png. The sub-maps are read once
- * more, one at a time. \param report called with the number of each sub-map before it is read \throws
- * WorkError naming the file that cannot be read or written */
+ * the number of its sub-map), and the pictures site_before.png and site_after.png.
+ *
+ * The sub-maps are read once more, one at a time.
+ *
+ * \param report called with the number of each sub-map before it is read
+ * \throws WorkError naming the file that cannot be read or written
+ */
 SiteCrispness writeSiteMap(const std::string& folder, const SurveyFolder& survey, const SurveyPoses& poses,
                            const std::function<void(std::size_t)>& report);
 

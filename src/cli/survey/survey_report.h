@@ -5,24 +5,22 @@
 #include <string>
 #include <vector>
 
-#include "survey/survey_map.h"
-#include "survey/survey_poses.h"
+#include "survey/survey_run.h"
 
 namespace pcl_fft_ground::cli {
 
-/// What the global alignment came to.
-struct GlobalResult {
-  std::string method;  ///< whose pairs were used
-  SurveyPoses poses;
-  SiteCrispness crispness;
-};
-
-/// The content of survey.json: parameters, both tables and the global alignment.
-nlohmann::ordered_json makeSurveyReport(const SurveyFolder& survey, const std::vector<PairResult>& results,
-                                        const GlobalResult& global, const nlohmann::ordered_json& parameters);
+/// The content of survey.json of one survey: both tables and the global alignment.
+/// \param mapping the method whose pairs the global alignment rests on
+nlohmann::ordered_json makeSurveyReport(const SurveyOutcome& outcome, const std::string& mapping);
 
 /// The tables and the global alignment for a reader.
-void printSurvey(std::ostream& out, const SurveyFolder& survey, const std::vector<PairResult>& results,
-                 const GlobalResult& global);
+void printSurvey(std::ostream& out, const SurveyOutcome& outcome, const std::string& mapping);
+
+/** Several surveys taken together: all pairs in one table. Of the poses' errors the root mean square over the
+ * surveys, the largest, and the median of the surveys' medians.
+ *
+ * \param outcomes one or more
+ */
+SurveyOutcome pooled(const std::vector<SurveyOutcome>& outcomes);
 
 }  // namespace pcl_fft_ground::cli

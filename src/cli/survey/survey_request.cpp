@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "command_line.h"
@@ -12,6 +13,7 @@
 namespace pcl_fft_ground::cli {
 namespace {
 
+namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using nlohmann::ordered_json;
 
@@ -36,19 +38,34 @@ double positive(const po::variables_map& values, const char* option) {
   throw UsageError(message.str());
 }
 
-std::string required(const po::variables_map& values, const char* option, const char* what) {
-  if (values.count(option) == 0 || values[option].as<std::string>().empty())
-    throw UsageError(std::string("survey: no ") + what);
-  return values[option].as<std::string>();
-}
-
 /// All that the results depend on: other parameters make other results.
-ordered_json describeRequest(const SurveyRequest& request) {
-  ordered_json parameters{{"folder", request.folder}, {"alignment", request.settings.described}};
+ordered_json describe(const std::string& folder, const SurveyRequest& request) {
+  ordered_json parameters{{"folder", folder}, {"alignment", request.settings.described}};
   for (const Segmenter& segmenter : request.segmenters)
     parameters["segmentation"][segmenter.method] = segmenter.parameters;
-  parameters["submaps"] = fingerprintOf(request.folder);
+  parameters["submaps"] = fingerprintOf(folder);
   return parameters;
+}
+
+/// The folder's own name, whatever the way to it.
+std::string nameOf(const std::string& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+/// A survey for each folder; of several each has a folder of its own name for its results.
+std::vector<SurveyTask> tasksOf(const std::vector<std::string>& folders, const SurveyRequest& request) {
+  std::vector<SurveyTask> tasks;
+  for (const std::string& folder : folders) {
+    const std::string name = nameOf(folder);
+    for (const SurveyTask& other : tasks)
+      if (other.name == name)
+        throw UsageError("survey: " + other.folder + " and " + folder +
+                         " have the same name, which their results would share");
+    const std::string directory = folders.size() == 1 ? request.directory : request.directory + "/" + name;
+    tasks.push_back({name, folder, directory, describe(folder, request)});
+  }
+  return tasks;
 }
 
 /// A segmenter for each method that needs one.
@@ -87,8 +104,10 @@ po::options_description surveyOptions() {
 
 SurveyRequest parseSurveyRequest(const po::variables_map& values) {
   SurveyRequest request;
-  request.folder = required(values, "folder", "folder of sub-maps given");
-  request.directory = required(values, "output", "output given: name a folder by -o DIR");
+  if (values.count("folder") == 0) throw UsageError("survey: no folder of sub-maps given");
+  if (values.count("output") == 0 || values["output"].as<std::string>().empty())
+    throw UsageError("survey: no output given: name a folder by -o DIR");
+  request.directory = values["output"].as<std::string>();
   request.methods = chosenMethods(values);
   request.settings = alignmentSettings(values);
   request.trust = {positive(values, "navigation-sigma"), positive(values, "heading-sigma")};
@@ -96,7 +115,7 @@ SurveyRequest parseSurveyRequest(const po::variables_map& values) {
   for (const std::string& method : request.methods)
     if (method != DENSE_ICP) request.mapping = method;
   request.segmenters = makeSegmenters(request.methods, values, request.settings.version);
-  request.parameters = describeRequest(request);
+  request.surveys = tasksOf(values["folder"].as<std::vector<std::string>>(), request);
   return request;
 }
 

@@ -10,16 +10,23 @@
 
 namespace pcl_fft_ground::cli {
 
-/// What the user wants done with a survey.
+/// One of the surveys asked for.
+struct SurveyTask {
+  std::string name;                   ///< of its folder
+  std::string folder;                 ///< of the sub-maps
+  std::string directory;              ///< for the results
+  nlohmann::ordered_json parameters;  ///< all that the results depend on
+};
+
+/// What the user wants done with surveys.
 struct SurveyRequest {
-  std::string folder;                ///< of the sub-maps
-  std::string directory;             ///< for the results
+  std::string directory;             ///< for the results of all
+  std::vector<SurveyTask> surveys;   ///< at least one; a single one has the directory for itself
   std::vector<std::string> methods;  ///< in the order of the tables
   std::string mapping;               ///< method of the global alignment
   NavigationTrust trust;
   AlignmentSettings settings;
   std::vector<Segmenter> segmenters;  ///< one for each method that needs one
-  nlohmann::ordered_json parameters;  ///< all that the results depend on
 };
 
 /// The options of the command but those of the alignment and the segmentation.

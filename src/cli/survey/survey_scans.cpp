@@ -9,8 +9,8 @@
 namespace pcl_fft_ground::cli {
 
 SurveyScans::SurveyScans(const std::vector<Submap>& submaps, const AlignmentSettings& settings,
-                         std::vector<Segmenter> segmenters)
-    : submaps_(submaps), settings_(settings), segmenters_(std::move(segmenters)) {}
+                         std::vector<Segmenter>& segmenters)
+    : submaps_(submaps), settings_(settings), segmenters_(segmenters) {}
 
 const SurveyScans::Loaded& SurveyScans::load(std::size_t submap) {
   constexpr std::size_t MOST_LOADED = 3;

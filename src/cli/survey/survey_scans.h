@@ -24,7 +24,7 @@ class SurveyScans {
  public:
   /// \param segmenters those of the methods that will be asked for, but DENSE_ICP
   SurveyScans(const std::vector<Submap>& submaps, const AlignmentSettings& settings,
-              std::vector<Segmenter> segmenters);
+              std::vector<Segmenter>& segmenters);
 
   /// The points of a sub-map; the reference holds until two other sub-maps are asked for.
   /// \throws WorkError naming the file
@@ -45,7 +45,7 @@ class SurveyScans {
 
   const std::vector<Submap>& submaps_;
   const AlignmentSettings& settings_;
-  std::vector<Segmenter> segmenters_;
+  std::vector<Segmenter>& segmenters_;
   std::deque<std::unique_ptr<Loaded>> loaded_;  ///< the last one asked for in front
   std::map<std::pair<std::string, std::size_t>, core::ScanSegments> segments_;
 };
