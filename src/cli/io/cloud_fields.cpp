@@ -18,7 +18,7 @@ auto withType(std::uint8_t datatype, Use&& use) {
   switch (datatype) {
     case pcl::PCLPointField::INT8:
       return use(std::int8_t{});
-    case pcl::PCLPointField::BOOL:
+    case BOOL_FIELD:
     case pcl::PCLPointField::UINT8:
       return use(std::uint8_t{});
     case pcl::PCLPointField::INT16:
@@ -29,9 +29,9 @@ auto withType(std::uint8_t datatype, Use&& use) {
       return use(std::int32_t{});
     case pcl::PCLPointField::UINT32:
       return use(std::uint32_t{});
-    case pcl::PCLPointField::INT64:
+    case INT64_FIELD:
       return use(std::int64_t{});
-    case pcl::PCLPointField::UINT64:
+    case UINT64_FIELD:
       return use(std::uint64_t{});
     case pcl::PCLPointField::FLOAT32:
       return use(float{});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcl/PCLPointCloud2.h>
+#include <pcl/pcl_config.h>
 #include <pcl/types.h>
 
 #include <cstdint>
@@ -10,6 +11,16 @@
 #include <vector>
 
 namespace pcl_fft_ground::cli {
+
+/// Field types that PCL has names for from 1.13 on only.
+constexpr std::uint8_t INT64_FIELD = 9;
+constexpr std::uint8_t UINT64_FIELD = 10;
+constexpr std::uint8_t BOOL_FIELD = 11;
+#if PCL_VERSION_COMPARE(>=, 1, 13, 0)
+static_assert(INT64_FIELD == pcl::PCLPointField::INT64, "as in PCL");
+static_assert(UINT64_FIELD == pcl::PCLPointField::UINT64, "as in PCL");
+static_assert(BOOL_FIELD == pcl::PCLPointField::BOOL, "as in PCL");
+#endif
 
 /// Points in a cloud of any layout.
 inline std::size_t pointCount(const pcl::PCLPointCloud2& cloud) {

@@ -35,20 +35,20 @@ double roundingMargin(const std::vector<Eigen::Vector2d>& hull, const Horizontal
 HullFilter::HullFilter(const std::vector<Eigen::Vector2d>& hull, const HorizontalProjection& projection) {
   inside_.fill({0.0F, 0.0F});
   if (hull.size() < 3) return;
-  const auto [left, right] = std::minmax_element(hull.begin(), hull.end(),
-                                                 [](const auto& a, const auto& b) { return a.x() < b.x(); });
-  const double margin = roundingMargin(hull, projection), width = right->x() - left->x();
+  const auto ends = std::minmax_element(hull.begin(), hull.end(),
+                                        [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  const double left = ends.first->x(), right = ends.second->x();
+  const double margin = roundingMargin(hull, projection), width = right - left;
   if (width < STRIPS * margin) return;
   const double strips_per_metre = STRIPS / width;
   strip_axis_ = (projection.axes.row(0) * strips_per_metre).cast<float>();
   strip_offset_ =
-      static_cast<float>(1 - (projection.axes.row(0).dot(projection.centre) + left->x()) * strips_per_metre);
+      static_cast<float>(1 - (projection.axes.row(0).dot(projection.centre) + left) * strips_per_metre);
   height_axis_ = projection.axes.row(1).cast<float>();
   height_offset_ = static_cast<float>(-projection.axes.row(1).dot(projection.centre));
 
   const auto insideAt = [&](int strip, double shift) {
-    return insideHeights(hull,
-                         std::clamp(left->x() + strip / strips_per_metre + shift, left->x(), right->x()));
+    return insideHeights(hull, std::clamp(left + strip / strips_per_metre + shift, left, right));
   };
   for (int strip = 0; strip < STRIPS; ++strip) {
     // The polygon is convex: what is inside at both ends of the strip is inside all over it.
