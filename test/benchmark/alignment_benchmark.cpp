@@ -5,18 +5,16 @@
 #include <pcl/point_types.h>
 
 #include <boost/program_options.hpp>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
 #include <iostream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "pcl_fft_ground/core/simulation.h"
 #include "survey/survey_table.h"
 #include "survey_trials.h"
+#include "trial_file.h"
 
 namespace {
 
@@ -65,28 +63,6 @@ struct Row {
   std::vector<double> tree_seconds = {};
 };
 
-/// A line for each trial, in a file if one is named.
-class TrialFile {
- public:
-  explicit TrialFile(const std::string& path) {
-    if (path.empty()) return;
-    file_.open(path);
-    if (!file_) throw std::runtime_error(path + ": cannot be written");
-    file_ << "row,pair,accepted,method,error_m,turn_deg,wrong,score,overlap,matches,sigma_m,refusal\n";
-  }
-
-  void add(const std::string& row, const std::string& pair, const TrialOutcome& outcome) {
-    const core::Alignment& a = outcome.alignment;
-    file_ << '"' << row << "\"," << pair << ',' << a.accepted << ',' << static_cast<int>(a.method) << ','
-          << outcome.error << ',' << outcome.turn << ',' << outcome.wrong() << ',' << a.score << ','
-          << a.overlap << ',' << a.matches.size() << ',' << std::sqrt(a.covariance(0, 0) + a.covariance(1, 1))
-          << ",\"" << a.refusal << "\"\n";
-  }
-
- private:
-  std::ofstream file_;
-};
-
 /// What the rows are made from and where their trials are listed.
 struct Benchmark {
   Request request;
@@ -104,7 +80,7 @@ void runAll(const std::vector<Trial>& trials, Benchmark& benchmark, Row& row) {
     if (row.results.trials % TRIALS_PER_TREE == 0) row.tree_seconds.push_back(benchmark.tree.seconds());
     const TrialOutcome outcome = run(trial, parameters);
     row.results.add(outcome);
-    benchmark.file.add(row.name, trial.name, outcome);
+    benchmark.file.add(row.name, trial, outcome);
   }
 }
 

@@ -81,6 +81,18 @@ TEST(Segments, CanBeCoarsenedOnly) {
   EXPECT_DOUBLE_EQ(coarsened(scan, 0.01).voxel_size, 0.02);
 }
 
+TEST(Segments, StrayReturnsFarAwayDoNotCount) {
+  const test::StoneScan scan = scanStones(TWO_STONES, poseAt(0, 0, 0), 1, 0.008);
+  Points points(3, scan.points.cols() + 1);
+  points << scan.points, Eigen::Vector3f(1e6F, -1e6F, 3e5F);
+  Labels labels = scan.labels;
+  labels.push_back(Label::OBJECT);
+  const ScanSegments with = describeScan(points, labels), without = describeScan(scan.points, scan.labels);
+  EXPECT_EQ(with.surface, without.surface);
+  EXPECT_EQ(with.objects, without.objects);
+  EXPECT_EQ(with.coverage.area(), without.coverage.area());
+}
+
 TEST(Segments, OfNoPointsAreNone) {
   const ScanSegments scan = describeScan(Points(3, 0), Labels());
   EXPECT_TRUE(scan.segments.empty());

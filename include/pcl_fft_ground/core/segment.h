@@ -50,7 +50,9 @@ struct ScanSegments {
  */
 PCL_FFT_GROUND_CORE_EXPORT double voxelSizeFor(const PointsView& points);
 
-/** Segments of a scan from labels, by voxel contact (Sec. IV-C).
+/** Segments of a scan from labels, by voxel contact (Sec. IV-C). Points far from all others (findFarPoints())
+ * are left out.
+ *
  * \param points finite points of the scan, its z axis roughly up
  * \param labels one per point
  * \throws std::invalid_argument if the numbers of points and labels differ or a parameter is out of range

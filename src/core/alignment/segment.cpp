@@ -8,6 +8,8 @@
 
 #include "alignment/voxel_means.h"
 #include "parameter_check.h"
+#include "pcl_fft_ground/core/far_points.h"
+#include "pcl_fft_ground/core/point_statistics.h"
 #include "pcl_fft_ground/core/voxel_clusters.h"
 #include "voxel_set.h"
 
@@ -70,13 +72,47 @@ void addSegments(std::vector<Points> clusters, ScanSegments& scan) {
   }
 }
 
+/// Those of the points that lie in a box.
+Points pointsWithin(const Points& points, const Eigen::AlignedBox3f& box) {
+  Points inside(3, points.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index n = 0; n < points.cols(); ++n)
+    if (box.contains(points.col(n))) inside.col(count++) = points.col(n);
+  inside.conservativeResize(Eigen::NoChange, count);
+  return inside;
+}
+
+/// The scan proper, whatever stray returns there are far away.
+Eigen::AlignedBox3f boxWithoutFarPoints(const Points& points) {
+  const std::vector<Eigen::Index> far = findFarPoints(points, summarise(points));
+  Eigen::AlignedBox3f box;
+  auto next = far.begin();
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    if (next != far.end() && *next == n)
+      ++next;
+    else
+      box.extend(points.col(n));
+  }
+  return box;
+}
+
+/// The mean points of the voxels that the columns occupy, as far as they belong to the scan proper.
+Points objectMeans(const PointsView& points, const std::vector<Eigen::Index>& columns,
+                   const ScanSegments& scan) {
+  const Bounds bounds = boundsOf(scan.surface);
+  const Eigen::AlignedBox3f box((bounds.low - scan.voxel_size).cast<float>().matrix(),
+                                (bounds.high + scan.voxel_size).cast<float>().matrix());
+  return pointsWithin(voxelMeans(gathered(points, columns), scan.voxel_size), box);
+}
+
 /// A scan without segments yet.
 ScanSegments describeSurface(const PointsView& points, const SegmentParameters& parameters) {
   validate(parameters);
   ScanSegments scan;
   scan.parameters = parameters;
   scan.voxel_size = parameters.voxel_size ? *parameters.voxel_size : voxelSizeFor(points);
-  scan.surface = voxelMeans(points, scan.voxel_size);
+  const Points means = voxelMeans(points, scan.voxel_size);
+  scan.surface = pointsWithin(means, boxWithoutFarPoints(means));
   scan.coverage = coverageOf(scan.surface, COVERAGE_CELL * scan.voxel_size);
   return scan;
 }
@@ -125,7 +161,7 @@ ScanSegments describeScan(const PointsView& points, const Labels& labels,
   for (std::size_t n = 0; n < labels.size(); ++n)
     if (labels[n] == Label::OBJECT) objects.push_back(static_cast<Eigen::Index>(n));
   ScanSegments scan = describeSurface(points, parameters);
-  scan.objects = voxelMeans(gathered(points, objects), scan.voxel_size);
+  scan.objects = objectMeans(points, objects, scan);
   clusterObjects(scan);
   return scan;
 }
@@ -137,9 +173,9 @@ ScanSegments describeScan(const PointsView& points, const std::vector<std::vecto
   std::vector<Points> means;
   for (const std::vector<Eigen::Index>& cluster : clusters) {
     objects.insert(objects.end(), cluster.begin(), cluster.end());
-    means.push_back(voxelMeans(gathered(points, cluster), scan.voxel_size));
+    means.push_back(objectMeans(points, cluster, scan));
   }
-  scan.objects = voxelMeans(gathered(points, objects), scan.voxel_size);
+  scan.objects = objectMeans(points, objects, scan);
   addSegments(std::move(means), scan);
   return scan;
 }
