@@ -1,0 +1,25 @@
+// Any bytes as a cloud file: it is read, or refused with a WorkError.
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "errors.h"
+#include "io/cloud_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::string path =
+      std::filesystem::temp_directory_path() / ("cloud_file_fuzzer." + std::to_string(getpid()));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  try {
+    pcl_fft_ground::cli::readCloud(path);
+  } catch (const pcl_fft_ground::cli::WorkError&) {
+    // as promised
+  }
+  return 0;
+}
