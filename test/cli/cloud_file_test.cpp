@@ -26,8 +26,8 @@ TEST_F(CloudFile, ReadsWhatPclWritesAsPcd) {
     EXPECT_FALSE(cloud.fields.is_dense);
     EXPECT_EQ(cloud.origin, Eigen::Vector3d::Zero());
     EXPECT_EQ(cloud.labels, (std::vector<int>{0, 1, 2, 0, 1, 2}));
-    EXPECT_EQ(cloud.sensor_origin, Eigen::Vector4f(1.5f, -2.25f, 3.0f, 0.0f));
-    EXPECT_EQ(cloud.sensor_orientation.coeffs(), Eigen::Quaternionf(0.5f, 0.5f, -0.5f, 0.5f).coeffs());
+    EXPECT_EQ(cloud.viewpoint.position, Eigen::Vector3d(1.5, -2.25, 3));
+    EXPECT_EQ(cloud.viewpoint.rotation.coeffs(), Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5).coeffs());
     ASSERT_EQ(cloud.points->size(), original.size());
     for (std::size_t i = 0; i < original.size(); ++i) {
       EXPECT_EQ((*cloud.points)[i].x, original[i].x);
@@ -106,19 +106,19 @@ TEST_F(CloudFile, WrittenCloudsAreReadBackByUsAndByPcl) {
   auto original = labelledCloud();
   pcl::PCLPointCloud2 table;
   pcl::toPCLPointCloud2(original, table);
-  const Eigen::Vector4f position(500000.53f, -0.1f, 1e-9f, 0.0f);
-  const Eigen::Quaternionf rotation = Eigen::Quaternionf(0.1f, 0.2f, 0.3f, 0.4f).normalized();
-  writePcd(pathOf("a.pcd"), table, position, rotation);
+  const Eigen::Vector3d position(6000000.123456, -0.1, 1e-9);
+  const Eigen::Quaterniond rotation = Eigen::Quaterniond(0.1, 0.2, 0.3, 0.4).normalized();
+  writePcd(pathOf("a.pcd"), table, {position, rotation});
   EXPECT_EQ(names(), std::vector<std::string>{"a.pcd"});
   const Cloud cloud = readCloud(pathOf("a.pcd"));
-  EXPECT_EQ(cloud.sensor_origin, position);
-  EXPECT_EQ(cloud.sensor_orientation.coeffs(), rotation.coeffs());
+  EXPECT_EQ(cloud.viewpoint.position, position);
+  EXPECT_EQ(cloud.viewpoint.rotation.coeffs(), rotation.coeffs());
   EXPECT_EQ(cloud.fields.height, 2u);
   EXPECT_EQ(cloud.labels, (std::vector<int>{0, 1, 2, 0, 1, 2}));
   pcl::PointCloud<pcl::PointXYZL> by_pcl;
   ASSERT_EQ(pcl::io::loadPCDFile(pathOf("a.pcd"), by_pcl), 0);
   ASSERT_EQ(by_pcl.size(), original.size());
-  EXPECT_EQ(by_pcl.sensor_origin_, position);
+  EXPECT_EQ(by_pcl.sensor_origin_.head<3>(), position.cast<float>());
   EXPECT_EQ(by_pcl[3].x, original[3].x);
   EXPECT_EQ(by_pcl[5].label, 2u);
 }

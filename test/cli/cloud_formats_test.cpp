@@ -138,7 +138,7 @@ TEST_F(CloudFile, OlderAndOddPcdHeadersAreRead) {
     const Cloud cloud = readCloud(pathOf(name));
     ASSERT_EQ(cloud.points->size(), 2u);
     EXPECT_EQ((*cloud.points)[1].getVector3fMap(), Eigen::Vector3f(4, 5, 6));
-    EXPECT_EQ(cloud.sensor_orientation.coeffs(), Eigen::Quaternionf::Identity().coeffs());
+    EXPECT_EQ(cloud.viewpoint.rotation.coeffs(), Eigen::Quaterniond::Identity().coeffs());
   }
 }
 

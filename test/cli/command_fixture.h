@@ -84,7 +84,9 @@ class CommandFixture : public TemporaryFolder {
   std::string makeCloud(const std::string& name, const pcl::PointCloud<PointT>& cloud) const {
     pcl::PCLPointCloud2 fields;
     pcl::toPCLPointCloud2(cloud, fields);
-    writePcd(pathOf(name), fields, cloud.sensor_origin_, cloud.sensor_orientation_);
+    const Eigen::Vector4f& position = cloud.sensor_origin_;
+    const Eigen::Quaternionf& rotation = cloud.sensor_orientation_;
+    writePcd(pathOf(name), fields, {position.head<3>().cast<double>(), rotation.cast<double>()});
     return pathOf(name);
   }
 

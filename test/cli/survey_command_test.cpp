@@ -2,60 +2,25 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
-#include "align/align_command.h"
-#include "command_fixture.h"
-#include "errors.h"
-#include "io/pose_table.h"
-#include "simulate/simulate_command.h"
+#include "io/cloud_file.h"
+#include "survey_fixture.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
 
 using nlohmann::json;
 
-/// A survey of the first four sub-maps along a transect of a pipe field, made once.
-class SurveyCommand : public CommandFixture {
+class SurveyCommand : public SurveyFixture {
  protected:
-  static void SetUpTestSuite() {
-    site_ = makeTemporaryFolder();
-    ASSERT_FALSE(site_.empty());
-    run(runSimulate, {"survey", "pipes", "-o", site_, "--points", "60000", "--seed", "1"});
-    for (int i = 4; i < 26; ++i)
-      std::filesystem::remove(site_ + (i < 10 ? "/submap_0" : "/submap_") + std::to_string(i) + ".pcd");
-  }
-  static void TearDownTestSuite() { std::filesystem::remove_all(site_); }
-
-  static std::string submap(int i) { return site_ + "/submap_0" + std::to_string(i) + ".pcd"; }
-  static Words with(Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
   Printed survey(const Words& more = {}) const {
     return run(runSurvey, with({site_, "-o", output(), "--max-object-size", "1"}, more));
   }
-  Printed align(const Words& more = {}) const {
-    return run(runAlign, with({submap(0), submap(1), "-o", output(), "--max-object-size", "1"}, more));
-  }
-  /// reference_from_moving of the first two sub-maps.
-  static Eigen::Isometry3d truth() {
-    const std::vector<NamedPose> poses = readPoses(site_ + "/truth.csv");
-    return poses[0].world_from_submap.inverse() * poses[1].world_from_submap;
-  }
-  static Eigen::Isometry3d readTransform(const std::string& path) {
-    std::ifstream file(path);
-    Eigen::Isometry3d transform;
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) file >> transform.matrix()(i, j);
-    EXPECT_TRUE(file) << path;
-    return transform;
-  }
-
-  static std::string site_;
 };
-std::string SurveyCommand::site_;
 
 TEST_F(SurveyCommand, TheSimulatedSurveyHasPosesByNavigationAndByTruth) {
   EXPECT_EQ(readPoses(site_ + "/truth.csv").size(), 26u);
@@ -70,43 +35,6 @@ TEST_F(SurveyCommand, TheSimulatedSurveyHasPosesByNavigationAndByTruth) {
       (pose.world_from_submap.translation() - origin.head<3>().cast<double>()).head<2>().norm();
   EXPECT_GT(error, 0.01);
   EXPECT_LT(error, 0.21);
-}
-
-TEST_F(SurveyCommand, AlignFindsTheTruth) {
-  const Printed printed = align();
-  EXPECT_EQ(printed.out.rfind("aligned by", 0), 0u) << printed.out;
-  const Eigen::Isometry3d found = readTransform(outputOf("transform.txt"));
-  EXPECT_LT((found.translation() - truth().translation()).norm(), 0.02);
-  const json report = json::parse(contentOf(outputOf("alignment.json")));
-  EXPECT_EQ(report["accepted"], true);
-  EXPECT_NEAR(report["reference_from_moving"][0][3].get<double>(), found.translation().x(), 1e-9);
-  EXPECT_LT(report["crispness"]["delta_nx_percent"], 0);
-  EXPECT_TRUE(std::filesystem::exists(outputOf("alignment.png")));
-}
-
-TEST_F(SurveyCommand, TheAlignedCloudIsTheMovingOneMoved) {
-  align();
-  const Eigen::Isometry3d found = readTransform(outputOf("transform.txt"));
-  const pcl::PCLPointCloud2 moving = readByPcl(submap(1)), aligned = readByPcl(outputOf("aligned.pcd"));
-  EXPECT_EQ(valuesOf(moving, "label"), valuesOf(aligned, "label"));
-  const std::vector<double> x = valuesOf(moving, "x"), y = valuesOf(moving, "y"), z = valuesOf(moving, "z");
-  const std::vector<double> ax = valuesOf(aligned, "x"), az = valuesOf(aligned, "z");
-  for (std::size_t n = 0; n < x.size(); n += 1000) {
-    const Eigen::Vector3d expected = found * Eigen::Vector3d(x[n], y[n], z[n]);
-    ASSERT_NEAR(ax[n], expected.x(), 1e-5);
-    ASSERT_NEAR(az[n], expected.z(), 1e-5);
-  }
-}
-
-TEST_F(SurveyCommand, ARefusalIsAResultAndLeavesNoTransform) {
-  align();
-  const Printed printed = align({"--guess", "40,0,0,0"});
-  EXPECT_EQ(printed.out.rfind("not aligned: ", 0), 0u) << printed.out;
-  EXPECT_FALSE(std::filesystem::exists(outputOf("transform.txt")));
-  EXPECT_FALSE(std::filesystem::exists(outputOf("aligned.pcd")));
-  const json report = json::parse(contentOf(outputOf("alignment.json")));
-  EXPECT_EQ(report["accepted"], false);
-  EXPECT_NE(report["refusal"], "");
 }
 
 TEST_F(SurveyCommand, SurveyWritesItsResults) {
@@ -153,10 +81,7 @@ TEST_F(SurveyCommand, GoesOnWhereItWasBrokenOff) {
 }
 
 TEST_F(SurveyCommand, SeveralFoldersMakeOneTable) {
-  const std::string other = pathOf("other");
-  std::filesystem::create_directory(other);
-  for (const char* file : {"/submap_00.pcd", "/submap_01.pcd", "/truth.csv"})
-    std::filesystem::copy_file(site_ + file, other + file);
+  const std::string other = copyOfTwo("other");
   survey({other, "--methods", "fft", "--quiet"});
   const std::string name = std::filesystem::path(site_).filename().string();
   const json together = json::parse(contentOf(outputOf("survey.json")));
@@ -172,16 +97,62 @@ TEST_F(SurveyCommand, SeveralFoldersMakeOneTable) {
     return report["global"]["placements"]["global"]["errors"]["translation_max"].get<double>();
   };
   EXPECT_EQ(largestError(together), std::max(largestError(whole), largestError(part)));
+  // Two middles alone would leave the turn about the line between them free.
+  EXPECT_LT(part["global"]["placements"]["global"]["errors"]["rotation_median_degrees"], 0.5);
 }
 
-TEST_F(SurveyCommand, RefusesFoldersOfTheSameName) {
-  try {
-    survey({site_ + "/."});
-    ADD_FAILURE() << "not refused";
-  } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("same name"), std::string::npos);
+TEST_F(SurveyCommand, AnotherTruthMakesOtherErrors) {
+  const std::string folder = copyOfTwo("other");
+  const auto median = [&] {
+    const json report = json::parse(
+        run(runSurvey, {folder, "-o", output(), "--max-object-size", "1", "--methods", "fft", "--json"}).out);
+    return report["accuracy"][0]["translation_median"];
+  };
+  EXPECT_LT(median().get<double>(), 0.02);
+  std::vector<NamedPose> poses = readPoses(folder + "/truth.csv");
+  poses[1].world_from_submap.translation().x() += 3;
+  makeFile("other/truth.csv", asCsv(poses));
+  EXPECT_GT(median().get<double>(), 1);
+  std::filesystem::remove(folder + "/truth.csv");
+  EXPECT_TRUE(median().is_null());
+}
+
+TEST_F(SurveyCommand, LargeCoordinatesKeepTheirMillimetres) {
+  const Eigen::Translation3d far_away(500000, 6000000, 0);
+  std::vector<NamedPose> truth;
+  for (const int i : {0, 1}) {
+    const Cloud cloud = readCloud(submap(i));
+    const Eigen::Isometry3d file_from_points = far_away * cloud.viewpoint.asTransform();
+    std::ostringstream text;
+    text << std::setprecision(12);
+    for (std::size_t n = 0; n < cloud.points->size(); n += 2) {
+      const Eigen::Vector3d place = file_from_points * (*cloud.points)[n].getVector3fMap().cast<double>();
+      text << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
+    }
+    const NamedPose pose = readPoses(site_ + "/truth.csv").at(static_cast<std::size_t>(i));
+    truth.push_back({pose.submap, far_away * pose.world_from_submap * file_from_points.inverse()});
+    std::filesystem::create_directories(pathOf("far"));
+    const std::string count = std::to_string((cloud.points->size() + 1) / 2);
+    makeFile("far/" + pose.submap, "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH " + count +
+                                       "\nHEIGHT 1\nDATA ascii\n" + text.str());
   }
-  EXPECT_FALSE(hasOutput());
+  makeFile("far/truth.csv", asCsv(truth));
+  const json report = json::parse(
+      run(runSurvey, {pathOf("far"), "-o", output(), "--max-object-size", "1", "--methods", "fft", "--json"})
+          .out);
+  EXPECT_EQ(report["accuracy"][0]["aligned"], 1);
+  EXPECT_LT(report["accuracy"][0]["translation_median"], 0.02);
+  EXPECT_LT(report["global"]["placements"]["global"]["errors"]["translation_rms"], 0.02);
+
+  const std::vector<NamedPose> poses = readPoses(outputOf("poses.csv"));
+  const Eigen::Vector3d place = truth[0].world_from_submap.inverse() * Eigen::Vector3d(500000, 6000000, 0);
+  const auto relative = [](const std::vector<NamedPose>& p) {
+    return p[1].world_from_submap.inverse() * p[0].world_from_submap;
+  };
+  EXPECT_LT((relative(poses) * place - relative(truth) * place).norm(), 0.02);
+  const Cloud merged = readCloud(outputOf("merged.pcd"));
+  EXPECT_NEAR(merged.viewpoint.position.y(), 6000000, 20);
+  EXPECT_LT(merged.points->back().getVector3fMap().norm(), 20);
 }
 
 TEST_F(SurveyCommand, PaperTakesSmallSegmentsAndPlainMatching) {
@@ -195,49 +166,6 @@ TEST_F(SurveyCommand, PaperTakesSmallSegmentsAndPlainMatching) {
 TEST_F(SurveyCommand, QuietPrintsNothing) {
   const Printed printed = survey({"--methods", "dense-icp", "--quiet"});
   EXPECT_EQ(printed.out + printed.err, "");
-}
-
-TEST_F(SurveyCommand, HelpTellsWhatThereIs) {
-  EXPECT_NE(run(runSurvey, {"--help"}).out.find("Table II"), std::string::npos);
-  EXPECT_NE(run(runAlign, {"--help"}).out.find("transform.txt"), std::string::npos);
-  EXPECT_NE(run(runSimulate, {"survey", "--help"}).out.find("truth.csv"), std::string::npos);
-}
-
-TEST_F(SurveyCommand, RefusesFoldersWithoutASurvey) {
-  makeFile("one.pcd", "");
-  for (const std::string& folder : {pathOf("missing"), folder_.string()}) {
-    try {
-      run(runSurvey, {folder, "-o", output()});
-      ADD_FAILURE() << "not refused";
-    } catch (const WorkError& error) {
-      EXPECT_NE(std::string(error.what()).find(folder), std::string::npos);
-    }
-  }
-}
-
-TEST_F(SurveyCommand, WrongUsageNamesTheOptionAndWhatIsAllowed) {
-  const std::vector<std::pair<Words, std::string>> wrong = {
-      {{"--methods", "fft,magic"}, "magic"},       {{"--min-matches", "0"}, "--min-matches"},
-      {{"--min-score", "2"}, "--min-score"},       {{"--max-turn", "200"}, "180"},
-      {{"--search", "far"}, "navigation or wide"}, {{"--matching", "best"}, "local or plain"},
-      {{"--fallback", "yes"}, "dense or none"},    {{"--heading-sigma", "0"}, "--heading-sigma"},
-      {{"--voxel-size", "nan"}, "--voxel-size"}};
-  for (const auto& [words, named] : wrong) {
-    SCOPED_TRACE(words[0]);
-    try {
-      survey(words);
-      ADD_FAILURE() << "not refused";
-    } catch (const UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
-    }
-    EXPECT_FALSE(hasOutput());
-  }
-  EXPECT_THROW(align({"--guess", "1,2,3"}), UsageError);
-  EXPECT_THROW(run(runAlign, {submap(0), "-o", output()}), UsageError);
-  EXPECT_THROW(run(runAlign, {submap(0), submap(1)}), UsageError);
-  EXPECT_THROW(run(runSurvey, {"-o", output()}), UsageError);
-  EXPECT_THROW(run(runSimulate, {"survey", "reef", "-o", output()}), UsageError);
-  EXPECT_THROW(run(runSimulate, {"survey", "wreck", "-o", output(), "--noise", "9"}), UsageError);
 }
 
 }  // namespace

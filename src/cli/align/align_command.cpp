@@ -31,8 +31,10 @@ What cannot be aligned with confidence is refused, and the reason printed: a ref
 constexpr const char* HELP_AFTER = R"(
 DIR is made if need be and receives
   transform.txt   4 x 4 matrix that maps the coordinates of MOVING to those of REFERENCE; only if aligned
-  aligned.pcd     MOVING in the coordinates of REFERENCE, with all its fields; only if aligned
-  alignment.json  the same matrix, covariance (x y z rotation vector), matches, score, crispness (Nx), parameters
+  aligned.pcd     MOVING in the coordinates of REFERENCE, with all its fields; only if aligned. Where they are large,
+                  a whole-metre origin is subtracted, which alignment.json gives; the VIEWPOINT says the same
+  alignment.json  the same matrix, its covariance (x y z rotation vector, about that origin), matches, score, crispness
+                  (Nx), parameters
   alignment.png   both scans from above before and after: REFERENCE blue, its segments turquoise, MOVING red, its
                   segments yellow, matched segments black
 
@@ -61,6 +63,7 @@ po::options_description commandOptions() {
 
 /// "1,2,0,30" as a pose.
 Eigen::Isometry3d parseGuess(const std::string& text) {
+  constexpr double FARTHEST = 1e8;  // beyond any coordinates on Earth
   std::string words = text;
   for (char& c : words) c = c == ',' ? ' ' : c;
   std::string_view rest = words;
@@ -68,18 +71,19 @@ Eigen::Isometry3d parseGuess(const std::string& text) {
   bool valid = true;
   for (double& number : numbers) {
     const std::optional<double> parsed = parseNumber<double>(takeWord(rest));
-    valid = valid && parsed && std::isfinite(*parsed);
+    valid = valid && parsed && std::abs(*parsed) <= FARTHEST;
     number = parsed.value_or(0);
   }
   if (!valid || !takeWord(rest).empty())
-    throw UsageError("--guess " + text + ": allowed are four numbers, X,Y,Z,YAW");
+    throw UsageError("--guess " + text + ": allowed are four numbers, X,Y,Z,YAW, up to 1e8");
   return Eigen::Translation3d(numbers[0], numbers[1], numbers[2]) *
          Eigen::AngleAxisd(numbers[3] * EIGEN_PI / 180, Eigen::Vector3d::UnitZ());
 }
 
 /// reference_from_moving of the clouds' points, as far as it is known.
 Eigen::Isometry3d initialGuess(const po::variables_map& values, const Cloud& reference, const Cloud& moving) {
-  if (values.count("guess") == 0) return worldFromPoints(reference).inverse() * worldFromPoints(moving);
+  if (values.count("guess") == 0)
+    return reference.viewpoint.asTransform().inverse() * moving.viewpoint.asTransform();
   return Eigen::Translation3d(-reference.origin) * parseGuess(values["guess"].as<std::string>()) *
          Eigen::Translation3d(moving.origin);
 }
@@ -98,13 +102,15 @@ void printSummary(const AlignedPair& pair, const ordered_json& report) {
     std::cout << "not aligned: " << pair.alignment.refusal << "\n";
     return;
   }
-  const Eigen::Isometry3d change = pair.guess.inverse() * pair.alignment.reference_from_moving;
-  const double turn = Eigen::AngleAxisd(change.linear()).angle() * 180 / EIGEN_PI;
+  const Eigen::Isometry3d& found = pair.alignment.reference_from_moving;
+  const Eigen::Vector3d middle = pair.moving.segments.surface.cast<double>().rowwise().mean();
+  const double turn =
+      Eigen::AngleAxisd(pair.guess.linear().transpose() * found.linear()).angle() * 180 / EIGEN_PI;
   std::cout << "aligned by " << report["method"].get<std::string>() << ": " << pair.alignment.matches.size()
             << " matches, score " << fixedNumber(pair.alignment.score, 2) << ", moved by "
-            << fixedNumber(change.translation().norm(), 3) << " m and " << fixedNumber(turn, 2)
-            << " degrees, Nx " << fixedNumber(report["crispness"]["delta_nx_percent"].get<double>(), 2)
-            << " %\n";
+            << fixedNumber((found * middle - pair.guess * middle).norm(), 3) << " m and "
+            << fixedNumber(turn, 2) << " degrees, Nx "
+            << fixedNumber(report["crispness"]["delta_nx_percent"].get<double>(), 2) << " %\n";
 }
 
 void align(const po::variables_map& values) {
@@ -112,7 +118,8 @@ void align(const po::variables_map& values) {
                                               ? std::vector<std::string>()
                                               : values["cloud"].as<std::vector<std::string>>();
   if (clouds.size() != 2) throw UsageError("align: allowed are two scans, REFERENCE and MOVING");
-  if (values.count("output") == 0) throw UsageError("align: no output given: name a folder by -o DIR");
+  if (values.count("output") == 0 || values["output"].as<std::string>().empty())
+    throw UsageError("align: no output given: name a folder by -o DIR");
   const AlignmentSettings settings = alignmentSettings(values);
   Segmenter segmenter = makeAlignmentSegmenter(values["method"].as<std::string>(), values, settings.version);
   const std::string directory = values["output"].as<std::string>();

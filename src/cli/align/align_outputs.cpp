@@ -43,20 +43,25 @@ const char* nameOf(core::AlignmentMethod method) {
   return "none";
 }
 
+std::vector<double> listOf(const Eigen::Vector3d& place) {
+  return {place.x(), place.y(), place.z()};
+}
+
+/// The centroids of matched segments, in the coordinates of the files.
 ordered_json matchesOf(const AlignedPair& pair) {
-  ordered_json matches = ordered_json::array();
-  const auto place = [](const core::Segment& segment) {
-    return std::vector<double>{segment.centroid.x(), segment.centroid.y(), segment.centroid.z()};
+  const auto place = [](const AlignedScan& scan, std::size_t segment) {
+    return listOf(scan.segments.segments[segment].centroid + scan.cloud.origin);
   };
+  ordered_json matches = ordered_json::array();
   for (const core::SegmentMatch& match : pair.alignment.matches)
-    matches.push_back({{"reference", place(pair.reference.segments.segments[match.reference])},
-                       {"moving", place(pair.moving.segments.segments[match.moving])}});
+    matches.push_back({{"reference", place(pair.reference, match.reference)},
+                       {"moving", place(pair.moving, match.moving)}});
   return matches;
 }
 
 ordered_json crispnessOf(const AlignedPair& pair) {
-  const core::Points reference = finitePoints(pair.reference.path, pair.reference.cloud);
-  const core::Points moving = finitePoints(pair.moving.path, pair.moving.cloud);
+  const core::Points reference = usablePoints(pair.reference.path, pair.reference.cloud);
+  const core::Points moving = usablePoints(pair.moving.path, pair.moving.cloud);
   const Eigen::Isometry3d& after = pair.alignment.reference_from_moving;
   const std::size_t nx_before = core::occupiedVoxels(moving, reference, pair.guess);
   const std::size_t nx_after = core::occupiedVoxels(moving, reference, after);
@@ -70,7 +75,7 @@ ordered_json crispnessOf(const AlignedPair& pair) {
           {"overlap_after", orNull(core::overlapCrispness(moving, reference, after))}};
 }
 
-/// The moving cloud with all its fields, placed in the coordinates of the reference's file.
+/// The moving cloud with all its fields, placed in the coordinates of the reference's file, less its origin.
 pcl::PCLPointCloud2 alignedCloud(const AlignedPair& pair) {
   const Eigen::Isometry3d& target_from_source = pair.alignment.reference_from_moving;
   pcl::PCLPointCloud2 cloud = pair.moving.cloud.fields;
@@ -115,6 +120,7 @@ ordered_json makeAlignmentReport(const AlignedPair& pair, const AlignmentSetting
                       {"refusal", alignment.refusal},
                       {"method", nameOf(alignment.method)},
                       {"reference_from_moving", rowsOf(transformOfFiles(pair).matrix())},
+                      {"origin", listOf(pair.reference.cloud.origin)},
                       {"covariance", rowsOf(alignment.covariance)},
                       {"score", alignment.score},
                       {"overlap", alignment.overlap},
@@ -132,17 +138,15 @@ void writeAlignment(const std::string& directory, const AlignedPair& pair, const
   const PairImage image{
       pair.reference.segments, pair.moving.segments,    pair.guess, pair.alignment.reference_from_moving,
       pair.alignment.matches,  panelTitle(pair, report)};
+  writeWhole(directory + "/alignment.png", [&](const std::string& path) { drawAlignment(path, image); });
   if (pair.alignment.accepted) {
     writeText(directory + "/transform.txt", matrixText(transformOfFiles(pair)));
-    const Cloud& reference = pair.reference.cloud;
-    writePcd(directory + "/aligned.pcd", alignedCloud(pair), reference.sensor_origin,
-             reference.sensor_orientation);
+    writePcd(directory + "/aligned.pcd", alignedCloud(pair), pair.reference.cloud.viewpoint);
   } else {
     std::error_code ignored;
     for (const char* name : {"/transform.txt", "/aligned.pcd"})
       std::filesystem::remove(directory + name, ignored);
   }
-  writeWhole(directory + "/alignment.png", [&](const std::string& path) { drawAlignment(path, image); });
   writeText(directory + "/alignment.json", asText(report));
 }
 

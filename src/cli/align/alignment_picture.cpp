@@ -80,7 +80,9 @@ void markScan(Panel& panel, const core::ScanSegments& scan, const Eigen::Isometr
 
 Panel makePanel(const PairImage& image, const Eigen::AlignedBox2d& extent, const Eigen::Isometry3d& pose,
                 const std::vector<core::SegmentMatch>& matches) {
-  Panel panel(extent, std::max(image.reference.voxel_size, image.moving.voxel_size));
+  constexpr double MOST_CELLS = 2000;  // along a side; scans far apart are drawn more coarsely
+  Panel panel(extent, std::max({image.reference.voxel_size, image.moving.voxel_size,
+                                extent.sizes().maxCoeff() / MOST_CELLS}));
   markScan(panel, image.reference, Eigen::Isometry3d::Identity(), REFERENCE, REFERENCE_SEGMENT);
   markScan(panel, image.moving, pose, MOVING, MOVING_SEGMENT);
   for (const core::SegmentMatch& match : matches) {

@@ -1,9 +1,13 @@
 #include "align/scan_description.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "errors.h"
+#include "pcl_fft_ground/core/far_points.h"
 #include "pcl_fft_ground/core/labels.h"
+#include "pcl_fft_ground/core/point_statistics.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -12,43 +16,74 @@ bool isFinitePoint(const Point& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// Labels of the finite points, in order.
-core::Labels labelFinitePoints(const Cloud& cloud, const pcl::PointIndices& objects) {
-  std::vector<bool> is_object(cloud.points->size(), false);
-  for (const pcl::index_t n : objects.indices) is_object[static_cast<std::size_t>(n)] = true;
-  core::Labels labels;
-  labels.reserve(is_object.size());
-  for (std::size_t n = 0; n < is_object.size(); ++n)
-    if (isFinitePoint((*cloud.points)[n]))
-      labels.push_back(is_object[n] ? core::Label::OBJECT : core::Label::GROUND);
-  return labels;
+/// Column n of the points is point indices[n] of the cloud.
+struct UsablePoints {
+  core::Points points;
+  pcl::Indices indices;
+};
+
+UsablePoints finitePoints(const std::string& path, const Cloud& cloud) {
+  UsablePoints usable;
+  usable.points.resize(3, static_cast<Eigen::Index>(cloud.points->size()));
+  for (std::size_t n = 0; n < cloud.points->size(); ++n) {
+    if (!isFinitePoint((*cloud.points)[n])) continue;
+    usable.points.col(static_cast<Eigen::Index>(usable.indices.size())) = (*cloud.points)[n].getVector3fMap();
+    usable.indices.push_back(static_cast<pcl::index_t>(n));
+  }
+  if (usable.indices.empty())
+    throw WorkError(path + ": none of its points is finite; at least one has to be");
+  usable.points.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(usable.indices.size()));
+  return usable;
+}
+
+UsablePoints usablePointsOf(const std::string& path, const Cloud& cloud) {
+  UsablePoints usable = finitePoints(path, cloud);
+  const std::vector<Eigen::Index> far = core::findFarPoints(usable.points, core::summarise(usable.points));
+  if (far.empty()) return usable;
+  std::vector<Eigen::Index> near;
+  for (Eigen::Index n = 0; n < usable.points.cols(); ++n)
+    if (!std::binary_search(far.begin(), far.end(), n)) near.push_back(n);
+  UsablePoints compact;
+  compact.points = usable.points(Eigen::all, near);
+  for (const Eigen::Index n : near) compact.indices.push_back(usable.indices[static_cast<std::size_t>(n)]);
+  return compact;
+}
+
+/// What the core refuses for want of cells or by a parameter, with the name of the file.
+template <typename Work>
+auto namingFile(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const std::logic_error& error) {
+    throw WorkError(path + ": " + error.what());
+  }
 }
 
 }  // namespace
 
-Eigen::Isometry3d worldFromPoints(const Cloud& cloud) {
-  return Eigen::Translation3d(cloud.sensor_origin.head<3>().cast<double>()) *
-         cloud.sensor_orientation.cast<double>().normalized() * Eigen::Translation3d(cloud.origin);
+core::Points usablePoints(const std::string& path, const Cloud& cloud) {
+  return usablePointsOf(path, cloud).points;
 }
 
-core::Points finitePoints(const std::string& path, const Cloud& cloud) {
-  core::Points points(3, static_cast<Eigen::Index>(cloud.points->size()));
-  Eigen::Index count = 0;
-  for (const Point& p : *cloud.points)
-    if (isFinitePoint(p)) points.col(count++) = p.getVector3fMap();
-  if (count == 0) throw WorkError(path + ": none of its points is finite; at least one has to be");
-  points.conservativeResize(Eigen::NoChange, count);
-  return points;
+core::ScanCoverage coverageOf(const std::string& path, const core::Points& points) {
+  constexpr double CELLS_PER_VOXEL = 2.5;  // as in core::describeScan()
+  return namingFile(path,
+                    [&] { return core::coverageOf(points, CELLS_PER_VOXEL * core::voxelSizeFor(points)); });
 }
 
 core::ScanSegments describeCloud(const std::string& path, const Cloud& cloud, Segmenter& segmenter,
                                  const core::SegmentParameters& parameters) {
-  const core::Points points = finitePoints(path, cloud);
+  const UsablePoints usable = usablePointsOf(path, cloud);
   pcl::PointIndices ground, objects;
   segmenter.filter->setInputCloud(cloud.points);
   segmenter.filter->segment(ground, objects);
   if (!segmenter.filter->getError().empty()) throw WorkError(path + ": " + segmenter.filter->getError());
-  return core::describeScan(points, labelFinitePoints(cloud, objects), parameters);
+  std::vector<bool> is_object(cloud.points->size(), false);
+  for (const pcl::index_t n : objects.indices) is_object[static_cast<std::size_t>(n)] = true;
+  core::Labels labels;
+  for (const pcl::index_t n : usable.indices)
+    labels.push_back(is_object[static_cast<std::size_t>(n)] ? core::Label::OBJECT : core::Label::GROUND);
+  return namingFile(path, [&] { return core::describeScan(usable.points, labels, parameters); });
 }
 
 }  // namespace pcl_fft_ground::cli

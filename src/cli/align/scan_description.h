@@ -11,14 +11,18 @@
 
 namespace pcl_fft_ground::cli {
 
-/// The pose that a file gives: it maps `cloud.points`, which are relative to an origin, to the world.
-Eigen::Isometry3d worldFromPoints(const Cloud& cloud);
+/// The points of a cloud that are finite and not far from all others (core::findFarPoints()), in order.
+/// \throws WorkError naming the file if none is finite
+core::Points usablePoints(const std::string& path, const Cloud& cloud);
 
-/// The finite points of a cloud, in order. \throws WorkError naming the file if there are none
-core::Points finitePoints(const std::string& path, const Cloud& cloud);
+/// Where the points of a scan lie, as the description of the scan has it.
+/// \throws WorkError naming the file if they are spread too widely
+core::ScanCoverage coverageOf(const std::string& path, const core::Points& points);
 
 /** Splits a scan into ground and objects and describes it by its segments.
- * \throws WorkError naming the file if it has no finite point or the method cannot work on it */
+ *
+ * \throws WorkError naming the file if it has no finite point or the method cannot work on it
+ */
 core::ScanSegments describeCloud(const std::string& path, const Cloud& cloud, Segmenter& segmenter,
                                  const core::SegmentParameters& parameters);
 

@@ -112,13 +112,13 @@ pcl::PCLPointCloud2 withFloatCoordinates(const pcl::PCLPointCloud2& table,
 }
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr toPoints(const Coordinates& xyz, const Eigen::Vector3d& origin,
-                                             const RawCloud& raw) {
+                                             const pcl::PCLPointCloud2& table, const Viewpoint& viewpoint) {
   auto points = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   points->resize(xyz[0].size());
-  points->width = raw.table.width;
-  points->height = raw.table.height;
-  points->sensor_origin_ = raw.sensor_origin;
-  points->sensor_orientation_ = raw.sensor_orientation;
+  points->width = table.width;
+  points->height = table.height;
+  points->sensor_origin_.head<3>() = viewpoint.position.cast<float>();
+  points->sensor_orientation_ = viewpoint.rotation.cast<float>();
   points->is_dense = true;
   for (std::size_t i = 0; i < points->size(); ++i) {
     auto& point = (*points)[i];
@@ -148,11 +148,11 @@ Cloud interpret(const RawCloud& raw) {
   const Coordinates xyz{coordinate(raw.table, "x"), coordinate(raw.table, "y"), coordinate(raw.table, "z")};
   Cloud cloud;
   cloud.origin = Eigen::Vector3d(axisOrigin(xyz[0]), axisOrigin(xyz[1]), axisOrigin(xyz[2]));
-  cloud.points = toPoints(xyz, cloud.origin, raw);
+  cloud.viewpoint = raw.viewpoint;
+  cloud.viewpoint.position = raw.viewpoint.asTransform() * cloud.origin;
+  cloud.points = toPoints(xyz, cloud.origin, raw.table, cloud.viewpoint);
   cloud.fields = withFloatCoordinates(raw.table, *cloud.points);
   cloud.fields.is_dense = cloud.points->is_dense;
-  cloud.sensor_origin = raw.sensor_origin;
-  cloud.sensor_orientation = raw.sensor_orientation;
   cloud.labels = toLabels(raw.table);
   return cloud;
 }

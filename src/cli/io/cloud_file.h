@@ -16,8 +16,7 @@ namespace pcl_fft_ground::cli {
 
 /// A cloud from a file, its coordinates relative to a whole-metre origin.
 ///
-/// A point of the file is points[i] + origin. The viewpoint is passed on as it is: it maps the file's own
-/// coordinates (points[i] + origin) to the world.
+/// A point of the file is points[i] + origin.
 struct Cloud {
   /// Every point in input order with all its fields (padding dropped); x, y, z as FLOAT32 [m], relative to
   /// `origin`. An organised cloud keeps its width and height.
@@ -26,8 +25,7 @@ struct Cloud {
   pcl::PointCloud<pcl::PointXYZ>::Ptr points;
   /// Subtracted from the input [m]; 0 on an axis whose coordinates are not large.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();                 ///< VIEWPOINT as read
-  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();  ///< VIEWPOINT as read
+  Viewpoint viewpoint;  ///< maps points[i] to the world: the file's VIEWPOINT after the shift by the origin
   /// The input's `label` field, whatever its type; 2 (neither ground nor object) where it is no number.
   /// Empty if the input has none.
   std::vector<int> labels;

@@ -28,8 +28,7 @@ RawCloud emptyCloud(const PcdHeader& header) {
   for (const auto& field : header.fields) {
     if (!isPadding(field)) appendField(cloud.table, field.name, field.datatype, field.count);
   }
-  cloud.sensor_origin = header.sensor_origin;
-  cloud.sensor_orientation = header.sensor_orientation;
+  cloud.viewpoint = header.viewpoint;
   return cloud;
 }
 
@@ -136,7 +135,7 @@ void decodeCompressed(std::string_view body, const PcdHeader& header, pcl::PCLPo
 }
 
 /// The shortest spelling that reads back as the same number.
-std::string spell(float number) {
+std::string spell(double number) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
@@ -149,7 +148,7 @@ char typeLetter(std::uint8_t datatype) {
     case pcl::PCLPointField::INT8:
     case pcl::PCLPointField::INT16:
     case pcl::PCLPointField::INT32:
-    case pcl::PCLPointField::INT64:
+    case INT64_FIELD:
       return 'I';
     default:
       return 'U';
@@ -158,8 +157,7 @@ char typeLetter(std::uint8_t datatype) {
 
 /// Unlike pcl::PCDWriter's header, this one keeps all digits of the viewpoint and allows for a cloud
 /// without points.
-std::string headerText(const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& position,
-                       const Eigen::Quaternionf& q) {
+std::string headerText(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint) {
   std::string names, sizes, types, counts;
   for (const auto& field : cloud.fields) {
     names += " " + field.name;
@@ -167,13 +165,13 @@ std::string headerText(const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& 
     types += std::string(" ") + typeLetter(field.datatype);
     counts += " " + std::to_string(field.count);
   }
-  std::string viewpoint;
-  for (const float number : {position.x(), position.y(), position.z(), q.w(), q.x(), q.y(), q.z()}) {
-    viewpoint += " " + spell(number);
-  }
+  const Eigen::Vector3d& t = viewpoint.position;
+  const Eigen::Quaterniond& q = viewpoint.rotation;
+  std::string pose;
+  for (const double number : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) pose += " " + spell(number);
   return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS" + names + "\nSIZE" + sizes +
          "\nTYPE" + types + "\nCOUNT" + counts + "\nWIDTH " + std::to_string(cloud.width) + "\nHEIGHT " +
-         std::to_string(cloud.height) + "\nVIEWPOINT" + viewpoint + "\nPOINTS " +
+         std::to_string(cloud.height) + "\nVIEWPOINT" + pose + "\nPOINTS " +
          std::to_string(pointCount(cloud)) + "\nDATA binary\n";
 }
 
@@ -197,14 +195,13 @@ RawCloud decodePcd(std::string_view content) {
   return cloud;
 }
 
-void writePcd(const std::string& path, const pcl::PCLPointCloud2& cloud, const Eigen::Vector4f& sensor_origin,
-              const Eigen::Quaternionf& sensor_orientation) {
+void writePcd(const std::string& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint) {
   pcl::Indices all(pointCount(cloud));
   std::iota(all.begin(), all.end(), 0);
   pcl::PCLPointCloud2 packed = selectPoints(cloud, all);
   packed.width = cloud.width;
   packed.height = cloud.height;
-  std::string content = headerText(packed, sensor_origin, sensor_orientation);
+  std::string content = headerText(packed, viewpoint);
   content.append(reinterpret_cast<const char*>(packed.data.data()), packed.data.size());
   writeText(path, content);
 }

@@ -22,8 +22,6 @@ RawCloud decodePcd(std::string_view content);
 /// Writes a binary PCD file, whole or not at all: all fields without padding, coordinates as they are. A
 /// cloud without points makes a file without points.
 /// \throws WorkError naming the file
-void writePcd(const std::string& path, const pcl::PCLPointCloud2& cloud,
-              const Eigen::Vector4f& sensor_origin = Eigen::Vector4f::Zero(),
-              const Eigen::Quaternionf& sensor_orientation = Eigen::Quaternionf::Identity());
+void writePcd(const std::string& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint = {});
 
 }  // namespace pcl_fft_ground::cli

@@ -64,9 +64,9 @@ std::optional<Words> wordsPerField(const HeaderLines& lines, std::string_view ke
 std::uint8_t fieldType(std::string_view type, std::string_view size) {
   static const std::map<std::string, std::uint8_t> types{
       {"I1", pcl::PCLPointField::INT8},    {"I2", pcl::PCLPointField::INT16},
-      {"I4", pcl::PCLPointField::INT32},   {"I8", pcl::PCLPointField::INT64},
+      {"I4", pcl::PCLPointField::INT32},   {"I8", INT64_FIELD},
       {"U1", pcl::PCLPointField::UINT8},   {"U2", pcl::PCLPointField::UINT16},
-      {"U4", pcl::PCLPointField::UINT32},  {"U8", pcl::PCLPointField::UINT64},
+      {"U4", pcl::PCLPointField::UINT32},  {"U8", UINT64_FIELD},
       {"F4", pcl::PCLPointField::FLOAT32}, {"F8", pcl::PCLPointField::FLOAT64},
       {"B1", pcl::PCLPointField::UINT8}};
   const auto found = types.find(std::string(type) + std::string(size));
@@ -135,9 +135,9 @@ void parseExtent(const HeaderLines& lines, PcdHeader& header) {
 void parseViewpoint(const HeaderLines& lines, PcdHeader& header) {
   const auto found = lines.find("VIEWPOINT");
   if (found == lines.end()) return;
-  std::vector<float> numbers;
+  std::vector<double> numbers;
   for (const std::string_view word : found->second) {
-    const auto number = parseNumber<float>(word);
+    const auto number = parseNumber<double>(word);
     if (!number || !std::isfinite(*number)) {
       throw WorkError("the PCD header's VIEWPOINT has " + quoted(word) + " where a finite number belongs");
     }
@@ -147,9 +147,9 @@ void parseViewpoint(const HeaderLines& lines, PcdHeader& header) {
     throw WorkError("the PCD header's VIEWPOINT has " + std::to_string(numbers.size()) +
                     " numbers, not the 7 of tx ty tz qw qx qy qz");
   }
-  header.sensor_origin = Eigen::Vector4f(numbers[0], numbers[1], numbers[2], 0.0f);
-  const Eigen::Quaternionf rotation(numbers[3], numbers[4], numbers[5], numbers[6]);
-  if (rotation.norm() > 0.0f) header.sensor_orientation = rotation;
+  header.viewpoint.position = {numbers[0], numbers[1], numbers[2]};
+  const Eigen::Quaterniond rotation(numbers[3], numbers[4], numbers[5], numbers[6]);
+  if (rotation.norm() > 0) header.viewpoint.rotation = rotation;
 }
 
 PcdStorage parseStorage(const Words& words) {

@@ -2,11 +2,11 @@
 
 #include <pcl/PCLPointField.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <string_view>
 #include <vector>
+
+#include "io/viewpoint.h"
 
 namespace pcl_fft_ground::cli {
 
@@ -20,9 +20,7 @@ struct PcdHeader {
   std::size_t point_bytes = 0;  ///< size of a point in the file, at most max_point_bytes
   std::size_t width = 0;        ///< width * height is at most max_point_count
   std::size_t height = 1;
-  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
-  Eigen::Quaternionf sensor_orientation =
-      Eigen::Quaternionf::Identity();  ///< identity if the file gives no rotation
+  Viewpoint viewpoint;  ///< not turned if the file gives no rotation
   PcdStorage storage = PcdStorage::ASCII;
   std::size_t body = 0;  ///< where the points begin in the file
 };

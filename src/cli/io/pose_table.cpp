@@ -46,10 +46,15 @@ std::vector<NamedPose> readPoses(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw WorkError(path + ": cannot be read");
   std::string line;
-  std::getline(file, line);
+  const auto readLine = [&] {
+    if (!std::getline(file, line)) return false;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    return true;
+  };
+  readLine();
   if (line != HEADER) throw WorkError(path + ": its first line is not " + HEADER);
   std::vector<NamedPose> poses;
-  for (std::size_t number = 2; std::getline(file, line); ++number)
+  for (std::size_t number = 2; readLine(); ++number)
     if (!line.empty()) poses.push_back(parsePose(line, path + ", line " + std::to_string(number)));
   return poses;
 }

@@ -2,10 +2,10 @@
 
 #include <pcl/PCLPointCloud2.h>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+
+#include "io/viewpoint.h"
 
 namespace pcl_fft_ground::cli {
 
@@ -13,8 +13,7 @@ namespace pcl_fft_ground::cli {
 struct RawCloud {
   pcl::PCLPointCloud2
       table;  ///< all points and fields, packed; each field of the type that the file gives it
-  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
-  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
+  Viewpoint viewpoint;
 };
 
 /// The most points that pcl::index_t can count.

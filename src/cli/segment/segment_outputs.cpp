@@ -83,7 +83,7 @@ void writeClouds(const std::string& directory, const Cloud& cloud, const Segment
     setFloatField(labelled, "height", {segmentation.heights.begin(), segmentation.heights.end()});
   }
   const auto write = [&](const std::string& name, const pcl::PCLPointCloud2& points) {
-    writePcd(directory + "/" + name, points, cloud.sensor_origin, cloud.sensor_orientation);
+    writePcd(directory + "/" + name, points, cloud.viewpoint);
   };
   write("labelled.pcd", labelled);
   write("ground.pcd", selectPoints(labelled, segmentation.ground.indices));
@@ -101,7 +101,7 @@ void writeGroundSurface(const std::string& directory, const Cloud& cloud, const 
     const Eigen::ArrayXXf uncertainty = surface.uncertainty.cast<float>();
     setFloatField(fields, "uncertainty", {uncertainty.data(), uncertainty.data() + uncertainty.size()});
   }
-  writePcd(directory + "/ground_surface.pcd", fields, cloud.sensor_origin, cloud.sensor_orientation);
+  writePcd(directory + "/ground_surface.pcd", fields, cloud.viewpoint);
 
   core::Points corners(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t n = 0; n < points.size(); ++n)

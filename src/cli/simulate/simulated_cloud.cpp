@@ -25,12 +25,9 @@ pcl::PCLPointCloud2 asCloud(const core::SimulatedScan& scan) {
 
 void writeSimulatedScan(const std::string& path, const core::SimulatedScan& scan,
                         const Eigen::Isometry3d& viewpoint, GroundHeights heights) {
-  Eigen::Vector4f position = Eigen::Vector4f::Zero();
-  position.head<3>() = viewpoint.translation().cast<float>();
-  const Eigen::Quaternionf orientation(Eigen::Quaterniond(viewpoint.linear()).cast<float>());
   pcl::PCLPointCloud2 cloud = asCloud(scan);
   if (heights == GroundHeights::WRITE) setFloatField(cloud, "ground", scan.ground_heights);
-  writePcd(path, cloud, position, orientation);
+  writePcd(path, cloud, {viewpoint.translation(), Eigen::Quaterniond(viewpoint.linear())});
 }
 
 }  // namespace pcl_fft_ground::cli

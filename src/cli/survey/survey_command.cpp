@@ -32,7 +32,8 @@ DIR is made if need be and receives
   pairs.csv                         all results, a line per pair and method, written after each: a run that was broken
                                     off goes on where it stopped, if its parameters and sub-maps are the same
   poses.csv                         pose of each sub-map by the global alignment: submap,x,y,z,qx,qy,qz,qw
-  merged.pcd                        all sub-maps in one, a point per cubic centimetre, with the number of the sub-map
+  merged.pcd                        all sub-maps in one, a point per cubic centimetre, with the number of the sub-map; far
+                                    from the world's origin the VIEWPOINT gives what is subtracted
   site_before.png site_after.png    the site as navigation has it and after global alignment
   survey.json parameters.json       both tables and the global alignment; the parameters
 
@@ -46,9 +47,11 @@ Exit status: 0 done, 1 the work failed, 2 wrong usage.
 )";
 
 /// The report of a survey, written beside its other results.
-ordered_json report(const SurveyTask& task, const SurveyOutcome& outcome, const std::string& mapping) {
-  ordered_json content = makeSurveyReport(outcome, mapping);
+ordered_json report(const SurveyTask& task, const SurveyOutcome& outcome, const SurveyRequest& request) {
+  ordered_json content = makeSurveyReport(outcome, request.mapping);
   content["parameters"] = task.parameters;
+  content["parameters"]["navigation-sigma"] = request.trust.horizontal;
+  content["parameters"]["heading-sigma"] = request.trust.heading;
   writeText(task.directory + "/survey.json", asText(content));
   return content;
 }
@@ -72,7 +75,7 @@ void surveyFolders(const po::variables_map& values) {
   for (const SurveyTask& task : request.surveys) {
     makeDirectory(task.directory);
     outcomes.push_back(processSurvey(task, request, progress));
-    reports.push_back(report(task, outcomes.back(), request.mapping));
+    reports.push_back(report(task, outcomes.back(), request));
   }
   progress.end();
   if (outcomes.size() > 1) {

@@ -13,15 +13,16 @@ namespace pcl_fft_ground::cli {
 struct Submap {
   std::string name;              ///< of its file, without the folder
   std::string path;              ///< of its file
-  Eigen::Isometry3d navigation;  ///< maps its points to the world
-  Eigen::Vector3d centroid;      ///< of its points, in its own frame [m]
-  core::ScanCoverage coverage;   ///< in its own frame
+  Eigen::Vector3d origin;        ///< subtracted from the coordinates of its file [m]
+  Eigen::Isometry3d navigation;  ///< maps its points, less the origin, to the world
+  Eigen::Vector3d centroid;      ///< of its points, less the origin [m]
+  core::ScanCoverage coverage;   ///< of its points, less the origin
 };
 
 /// A folder of sub-maps.
 struct SurveyFolder {
   std::vector<Submap> submaps;           ///< in the order of their names
-  std::vector<Eigen::Isometry3d> truth;  ///< true poses, if truth.csv gives them: one per sub-map, or empty
+  std::vector<Eigen::Isometry3d> truth;  ///< likewise, if truth.csv gives them: one per sub-map, or empty
 };
 
 /// The clouds (*.pcd, *.ply) in a folder, in the order of their names.
@@ -33,7 +34,8 @@ std::vector<std::string> listSubmaps(const std::string& folder);
  * \throws WorkError naming the file that cannot be read */
 SurveyFolder readSurvey(const std::string& folder, const std::function<void(std::size_t)>& report);
 
-/// Names, sizes and times of the files of a folder's sub-maps: changes when one of them does.
+/// Names, sizes and times of the files of a folder's sub-maps and of their truth: changes when one of them
+/// does.
 std::vector<std::string> fingerprintOf(const std::string& folder);
 
 }  // namespace pcl_fft_ground::cli

@@ -17,7 +17,9 @@ namespace pcl_fft_ground::cli {
 namespace {
 
 constexpr double MERGED_VOXEL = 0.01;  // [m]
-constexpr double PICTURE_CELL = 0.02;  // [m]
+constexpr double PICTURE_CELL = 0.02;  // of the pictures, more for large sites [m]
+constexpr double MOST_CELLS = 3000;    // of the pictures along a side
+constexpr double LARGE = 10000;        // coordinates from here on are given relative to an origin [m]
 
 /// The cubes of a lattice that points have fallen into.
 class VoxelCount {
@@ -45,14 +47,14 @@ class VoxelCount {
 class SitePicture {
  public:
   explicit SitePicture(const Eigen::AlignedBox2d& extent) {
-    const Eigen::Array2i cells = (extent.sizes() / PICTURE_CELL).array().ceil().cast<int>() + 1;
+    image_.cell_size = std::max(PICTURE_CELL, extent.sizes().maxCoeff() / MOST_CELLS);
+    const Eigen::Array2i cells = (extent.sizes() / image_.cell_size).array().ceil().cast<int>() + 1;
     image_.values = Eigen::ArrayXXd::Constant(cells.x(), cells.y(), std::numeric_limits<double>::quiet_NaN());
     image_.origin = extent.min();
-    image_.cell_size = PICTURE_CELL;
   }
 
   void add(const Eigen::Vector3d& place) {
-    const Eigen::Array2d at = (place.head<2>() - image_.origin).array() / PICTURE_CELL;
+    const Eigen::Array2d at = (place.head<2>() - image_.origin).array() / image_.cell_size;
     if ((at < 0).any() || at.x() >= static_cast<double>(image_.values.rows()) ||
         at.y() >= static_cast<double>(image_.values.cols()))
       return;
@@ -81,9 +83,17 @@ Eigen::AlignedBox2d siteExtent(const SurveyFolder& survey, const SurveyPoses& po
   return extent;
 }
 
+/// What is subtracted from the coordinates of the site, so that floats hold them: whole metres.
+Eigen::Vector3d originOf(const Eigen::AlignedBox2d& extent) {
+  const Eigen::Vector2d centre = extent.center();
+  return {std::abs(centre.x()) > LARGE ? std::round(centre.x()) : 0.0,
+          std::abs(centre.y()) > LARGE ? std::round(centre.y()) : 0.0, 0.0};
+}
+
 /// All that is gathered while the sub-maps pass by.
 struct Site {
-  explicit Site(const Eigen::AlignedBox2d& extent) : before(extent), after(extent) {}
+  explicit Site(const Eigen::AlignedBox2d& extent)
+      : origin(originOf(extent)), before(extent), after(extent) {}
 
   void add(const core::Points& points, std::size_t submap, const SurveyPoses& poses) {
     for (Eigen::Index n = 0; n < points.cols(); ++n) {
@@ -96,12 +106,13 @@ struct Site {
       before.add(by_navigation);
       after.add(place);
       if (!merged_voxels.add(place)) continue;
-      merged.push_back(place.cast<float>());
+      merged.push_back((place - origin).cast<float>());
       merged_submaps.push_back(static_cast<std::int32_t>(submap));
     }
   }
 
   VoxelCount navigation{core::CRISPNESS_VOXEL}, chained{core::CRISPNESS_VOXEL}, global{core::CRISPNESS_VOXEL};
+  Eigen::Vector3d origin;
   SitePicture before, after;
   VoxelCount merged_voxels{MERGED_VOXEL};
   std::vector<Eigen::Vector3f> merged;
@@ -115,7 +126,7 @@ void writeMerged(const std::string& path, const Site& site) {
   for (std::size_t i = 0; i < site.merged.size(); ++i)
     std::memcpy(cloud.data.data() + i * cloud.point_step, site.merged[i].data(), sizeof(float) * 3);
   setInt32Field(cloud, "submap", site.merged_submaps);
-  writePcd(path, cloud);
+  writePcd(path, cloud, {site.origin, Eigen::Quaterniond::Identity()});
 }
 
 void drawSite(const std::string& path, const std::string& title, const SitePicture& site,
@@ -133,7 +144,7 @@ SiteCrispness writeSiteMap(const std::string& folder, const SurveyFolder& survey
   for (std::size_t i = 0; i < survey.submaps.size(); ++i) {
     report(i + 1);
     const std::string& path = survey.submaps[i].path;
-    site.add(finitePoints(path, readCloud(path)), i, poses);
+    site.add(usablePoints(path, readCloud(path)), i, poses);
   }
   writeMerged(folder + "/merged.pcd", site);
   const std::optional<ValueRange> range = robustRange(site.after.image().values);

@@ -17,6 +17,7 @@ struct SiteCrispness {
 /** Writes merged.pcd, all sub-maps as the global alignment places them (a point per cubic centimetre, with
  * the number of its sub-map), and the pictures site_before.png and site_after.png.
  *
+ * Where the coordinates are large merged.pcd is relative to whole metres, which its VIEWPOINT gives.
  * The sub-maps are read once more, one at a time.
  *
  * \param report called with the number of each sub-map before it is read

@@ -136,12 +136,14 @@ std::string asCsv(const std::vector<PairResult>& results, const std::vector<std:
 std::vector<PairResult> readPairs(const std::string& path, const std::vector<std::string>& names) {
   std::ifstream file(path);
   std::string line;
-  if (!std::getline(file, line) || line != HEADER) throw WorkError(path + ": is no table of pairs");
+  if (!std::getline(file, line)) return {};
+  if (line != HEADER) throw WorkError(path + ": is no table of pairs; delete it to start anew");
   std::vector<PairResult> results;
   try {
     while (std::getline(file, line)) results.push_back(parseLine(line, names));
   } catch (const std::logic_error&) {  // of the conversions: a word that is no number or not in a list
-    throw WorkError(path + ": '" + line.substr(0, 40) + "...' is no line of a table of pairs");
+    throw WorkError(path + ": '" + line.substr(0, 40) +
+                    "...' is no line of a table of pairs; delete the file to start anew");
   }
   return results;
 }

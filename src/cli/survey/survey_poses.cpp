@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "survey/survey_table.h"
@@ -65,12 +66,28 @@ std::vector<Eigen::Isometry3d> chainPoses(const std::vector<Eigen::Isometry3d>& 
   return poses;
 }
 
-/// The middles of the sub-maps, one per column.
-Eigen::Matrix3Xd middles(const SurveyFolder& survey, const std::vector<Eigen::Isometry3d>& poses) {
+/// Places fixed to the sub-maps, one per column. \param offset from the middle of each, in its own frame [m]
+Eigen::Matrix3Xd placesAt(const Eigen::Vector3d& offset, const SurveyFolder& survey,
+                          const std::vector<Eigen::Isometry3d>& poses) {
   Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(poses.size()));
   for (std::size_t i = 0; i < poses.size(); ++i)
-    places.col(static_cast<Eigen::Index>(i)) = poses[i] * survey.submaps[i].centroid;
+    places.col(static_cast<Eigen::Index>(i)) = poses[i] * (survey.submaps[i].centroid + offset);
   return places;
+}
+
+/// The motion that lays poses on the truth. By three places of each sub-map, since the middles of those along
+/// one transect would leave the turn about it free.
+Eigen::Isometry3d truthFrom(const SurveyFolder& survey, const std::vector<Eigen::Isometry3d>& poses) {
+  const auto count = static_cast<Eigen::Index>(poses.size());
+  Eigen::Matrix3Xd places(3, 3 * count), true_places(3, 3 * count);
+  const std::array<Eigen::Vector3d, 3> offsets{
+      {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()}};
+  for (Eigen::Index n = 0; n < 3; ++n) {
+    const Eigen::Vector3d& offset = offsets[static_cast<std::size_t>(n)];
+    places.middleCols(n * count, count) = placesAt(offset, survey, poses);
+    true_places.middleCols(n * count, count) = placesAt(offset, survey, survey.truth);
+  }
+  return Eigen::Isometry3d(Eigen::umeyama(places, true_places, false));
 }
 
 }  // namespace
@@ -92,10 +109,12 @@ SurveyPoses solveSurvey(const SurveyFolder& survey, const std::vector<PairResult
 }
 
 PoseErrors poseErrors(const SurveyFolder& survey, const std::vector<Eigen::Isometry3d>& poses) {
-  const Eigen::Matrix3Xd places = middles(survey, poses);
-  const Eigen::Matrix3Xd true_places = middles(survey, survey.truth);
-  const Eigen::Isometry3d truth_from_poses(Eigen::umeyama(places, true_places, false));
-  const Eigen::VectorXd distances = (truth_from_poses * places - true_places).colwise().norm();
+  const Eigen::Isometry3d truth_from_poses = truthFrom(survey, poses);
+  const Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  const Eigen::VectorXd distances =
+      (truth_from_poses * placesAt(middle, survey, poses) - placesAt(middle, survey, survey.truth))
+          .colwise()
+          .norm();
   std::vector<double> turns;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Matrix3d turn =

@@ -26,16 +26,18 @@ void printPlacement(std::ostream& out, const Placement& placement, std::size_t v
 /// The errors of one way of placing over all surveys; none if one of them has no truth.
 std::optional<PoseErrors> pooledErrors(const std::vector<SurveyOutcome>& outcomes, std::size_t placement) {
   PoseErrors all;
-  double squares = 0;
+  double squares = 0, submaps = 0;
   std::vector<double> turns;
   for (const SurveyOutcome& outcome : outcomes) {
     const std::optional<PoseErrors>& errors = outcome.placements.at(placement).errors;
     if (!errors) return std::nullopt;
-    squares += errors->rms_translation * errors->rms_translation;
+    const auto count = static_cast<double>(outcome.submaps);
+    squares += count * errors->rms_translation * errors->rms_translation;
+    submaps += count;
     all.max_translation = std::max(all.max_translation, errors->max_translation);
     turns.push_back(errors->median_rotation);
   }
-  all.rms_translation = std::sqrt(squares / static_cast<double>(outcomes.size()));
+  all.rms_translation = std::sqrt(squares / submaps);
   all.median_rotation = quantileOf(turns, 0.5).value_or(0);
   return all;
 }

@@ -16,8 +16,8 @@ nlohmann::ordered_json makeSurveyReport(const SurveyOutcome& outcome, const std:
 /// The tables and the global alignment for a reader.
 void printSurvey(std::ostream& out, const SurveyOutcome& outcome, const std::string& mapping);
 
-/** Several surveys taken together: all pairs in one table. Of the poses' errors the root mean square over the
- * surveys, the largest, and the median of the surveys' medians.
+/** Several surveys taken together: all pairs in one table. Of the poses' errors the root mean square over all
+ * sub-maps, the largest, and the median of the surveys' medians.
  *
  * \param outcomes one or more
  */

@@ -17,6 +17,18 @@ namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using nlohmann::ordered_json;
 
+void requireMethod(const std::string& name) {
+  const std::vector<std::string> segmenters = methodNames();
+  std::string allowed;
+  for (const std::string& segmenter : segmenters) {
+    if (segmenterOf(name) == segmenter) return;
+    allowed += segmenter + ", ";
+  }
+  if (name != DENSE_ICP)
+    throw UsageError("--methods " + name + ": allowed are " + allowed + DENSE_ICP +
+                     ", all but the last with or without " + WITH_FALLBACK);
+}
+
 std::vector<std::string> chosenMethods(const po::variables_map& values) {
   std::vector<std::string> names = methodNames();
   names.push_back(DENSE_ICP);
@@ -24,17 +36,21 @@ std::vector<std::string> chosenMethods(const po::variables_map& values) {
   if (values.count("methods") == 0) return names;
   names.clear();
   std::istringstream list(values["methods"].as<std::string>());
-  for (std::string name; std::getline(list, name, ',');)
+  for (std::string name; std::getline(list, name, ',');) {
+    name.erase(0, name.find_first_not_of(' '));
+    name.erase(name.find_last_not_of(' ') + 1);
+    requireMethod(name);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
   if (names.empty()) throw UsageError("--methods: allowed are names of methods, parted by commas");
   return names;
 }
 
-double positive(const po::variables_map& values, const char* option) {
+double within(const po::variables_map& values, const char* option, double lowest, double highest) {
   const auto value = values[option].as<double>();
-  if (value > 0 && std::isfinite(value)) return value;
+  if (value >= lowest && value <= highest) return value;
   std::ostringstream message;
-  message << "--" << option << " " << value << ": allowed is a finite number above 0";
+  message << "--" << option << " " << value << ": allowed is " << lowest << " to " << highest;
   throw UsageError(message.str());
 }
 
@@ -63,6 +79,9 @@ std::vector<SurveyTask> tasksOf(const std::vector<std::string>& folders, const S
         throw UsageError("survey: " + other.folder + " and " + folder +
                          " have the same name, which their results would share");
     const std::string directory = folders.size() == 1 ? request.directory : request.directory + "/" + name;
+    std::error_code ignored;
+    if (fs::equivalent(folder, directory, ignored))
+      throw UsageError("-o " + request.directory + ": the results would lie among the sub-maps of " + folder);
     tasks.push_back({name, folder, directory, describe(folder, request)});
   }
   return tasks;
@@ -93,9 +112,9 @@ po::options_description surveyOptions() {
       "methods, parted by commas; the last one but dense-icp makes the map "
       "(naive,planar,grid,graph-cut,fft-lowpass,fft,dense-icp,fft+dense)");
   add("navigation-sigma", po::value<double>()->default_value(trust.horizontal, "0.1")->value_name("M"),
-      "standard deviation of the places by navigation [m], above 0");
+      "standard deviation of the places by navigation [m], 0.0001 to 10000");
   add("heading-sigma", po::value<double>()->default_value(trust.heading, "2")->value_name("DEG"),
-      "standard deviation of the headings by navigation [degrees], above 0");
+      "standard deviation of the headings by navigation [degrees], 0.001 to 180");
   add("json", po::bool_switch(), "print survey.json");
   add("quiet", po::bool_switch(), "print nothing but errors");
   add("help,h", po::bool_switch(), "show this text");
@@ -110,7 +129,7 @@ SurveyRequest parseSurveyRequest(const po::variables_map& values) {
   request.directory = values["output"].as<std::string>();
   request.methods = chosenMethods(values);
   request.settings = alignmentSettings(values);
-  request.trust = {positive(values, "navigation-sigma"), positive(values, "heading-sigma")};
+  request.trust = {within(values, "navigation-sigma", 1e-4, 1e4), within(values, "heading-sigma", 1e-3, 180)};
   request.mapping = request.methods.front();
   for (const std::string& method : request.methods)
     if (method != DENSE_ICP) request.mapping = method;

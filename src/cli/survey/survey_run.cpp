@@ -1,5 +1,8 @@
 #include "survey/survey_run.h"
 
+#include <stdexcept>
+
+#include "errors.h"
 #include "io/output_file.h"
 #include "io/pose_table.h"
 #include "survey/survey_alignment.h"
@@ -35,7 +38,10 @@ std::vector<PairResult> alignPairs(const SurveyTask& task, SurveyRequest& reques
 void writePoses(const std::string& directory, const SurveyFolder& survey,
                 const std::vector<Eigen::Isometry3d>& poses) {
   std::vector<NamedPose> table;
-  for (std::size_t i = 0; i < poses.size(); ++i) table.push_back({survey.submaps[i].name, poses[i]});
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Submap& submap = survey.submaps[i];
+    table.push_back({submap.name, poses[i] * Eigen::Translation3d(-submap.origin)});
+  }
   writeText(directory + "/poses.csv", asCsv(table));
 }
 
@@ -44,6 +50,16 @@ Placement placementOf(const char* name, std::size_t voxels, const SurveyFolder& 
   Placement placement{name, voxels, std::nullopt};
   if (!survey.truth.empty()) placement.errors = poseErrors(survey, poses);
   return placement;
+}
+
+/// Solves for the poses. What makes it impossible has been read from the record of the pairs.
+SurveyPoses posesOf(const SurveyTask& task, const SurveyFolder& survey, const std::vector<PairResult>& pairs,
+                    const SurveyRequest& request) {
+  try {
+    return solveSurvey(survey, pairs, request.mapping, request.trust);
+  } catch (const std::exception& error) {
+    throw WorkError(task.directory + "/pairs.csv: " + error.what() + "; delete it to start anew");
+  }
 }
 
 }  // namespace
@@ -57,7 +73,7 @@ SurveyOutcome processSurvey(const SurveyTask& task, SurveyRequest& request, Prog
   outcome.name = task.name;
   outcome.submaps = survey.submaps.size();
   outcome.pairs = alignPairs(task, request, survey, progress);
-  const SurveyPoses poses = solveSurvey(survey, outcome.pairs, request.mapping, request.trust);
+  const SurveyPoses poses = posesOf(task, survey, outcome.pairs, request);
   outcome.edges = poses.edges;
   outcome.rejected_edges = poses.rejected_edges;
   writePoses(task.directory, survey, poses.global);

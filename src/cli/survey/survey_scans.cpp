@@ -23,7 +23,7 @@ const SurveyScans::Loaded& SurveyScans::load(std::size_t submap) {
   } else {
     const std::string& path = submaps_[submap].path;
     Cloud cloud = readCloud(path);
-    core::Points points = finitePoints(path, cloud);
+    core::Points points = usablePoints(path, cloud);
     wanted = std::make_unique<Loaded>(Loaded{submap, std::move(cloud), std::move(points)});
   }
   loaded_.push_front(std::move(wanted));

@@ -1,0 +1,93 @@
+#include "align/align_command.h"
+
+#include <Eigen/Geometry>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "io/cloud_file.h"
+#include "survey_fixture.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+using nlohmann::json;
+
+class AlignCommand : public SurveyFixture {
+ protected:
+  Printed align(const Words& more = {}) const {
+    return run(runAlign, with({submap(0), submap(1), "-o", output(), "--max-object-size", "1"}, more));
+  }
+  /// reference_from_moving of the first two sub-maps.
+  static Eigen::Isometry3d truth() {
+    const std::vector<NamedPose> poses = readPoses(site_ + "/truth.csv");
+    return poses[0].world_from_submap.inverse() * poses[1].world_from_submap;
+  }
+  static Eigen::Isometry3d readTransform(const std::string& path) {
+    std::ifstream file(path);
+    Eigen::Isometry3d transform;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) file >> transform.matrix()(i, j);
+    EXPECT_TRUE(file) << path;
+    return transform;
+  }
+};
+
+TEST_F(AlignCommand, FindsTheTruth) {
+  const Printed printed = align();
+  EXPECT_EQ(printed.out.rfind("aligned by", 0), 0u) << printed.out;
+  const Eigen::Isometry3d found = readTransform(outputOf("transform.txt"));
+  EXPECT_LT((found.translation() - truth().translation()).norm(), 0.02);
+  const json report = json::parse(contentOf(outputOf("alignment.json")));
+  EXPECT_EQ(report["accepted"], true);
+  EXPECT_NEAR(report["reference_from_moving"][0][3].get<double>(), found.translation().x(), 1e-9);
+  EXPECT_LT(report["crispness"]["delta_nx_percent"], 0);
+  EXPECT_TRUE(std::filesystem::exists(outputOf("alignment.png")));
+}
+
+TEST_F(AlignCommand, TheAlignedCloudIsTheMovingOneMoved) {
+  align();
+  const Eigen::Isometry3d found = readTransform(outputOf("transform.txt"));
+  const pcl::PCLPointCloud2 moving = readByPcl(submap(1)), aligned = readByPcl(outputOf("aligned.pcd"));
+  EXPECT_EQ(valuesOf(moving, "label"), valuesOf(aligned, "label"));
+  const std::vector<double> x = valuesOf(moving, "x"), y = valuesOf(moving, "y"), z = valuesOf(moving, "z");
+  const std::vector<double> ax = valuesOf(aligned, "x"), az = valuesOf(aligned, "z");
+  for (std::size_t n = 0; n < x.size(); n += 1000) {
+    const Eigen::Vector3d expected = found * Eigen::Vector3d(x[n], y[n], z[n]);
+    ASSERT_NEAR(ax[n], expected.x(), 1e-5);
+    ASSERT_NEAR(az[n], expected.z(), 1e-5);
+  }
+}
+
+TEST_F(AlignCommand, ARefusalIsAResultAndLeavesNoTransform) {
+  align();
+  const Printed printed = align({"--guess", "40,0,0,0"});
+  EXPECT_EQ(printed.out.rfind("not aligned: ", 0), 0u) << printed.out;
+  EXPECT_FALSE(std::filesystem::exists(outputOf("transform.txt")));
+  EXPECT_FALSE(std::filesystem::exists(outputOf("aligned.pcd")));
+  const json report = json::parse(contentOf(outputOf("alignment.json")));
+  EXPECT_EQ(report["accepted"], false);
+  EXPECT_NE(report["refusal"], "");
+}
+
+TEST_F(AlignCommand, AFarOutlierIsLeftOut) {
+  pcl::PointCloud<pcl::PointXYZ> cloud = *readCloud(submap(1)).points;
+  cloud.push_back({1e6F, -1e6F, 3e5F});
+  const Printed printed = run(runAlign, {submap(0), makeCloud("stray.pcd", cloud), "-o", output(),
+                                         "--max-object-size", "1", "--json"});
+  const json report = json::parse(printed.out);
+  EXPECT_EQ(report["accepted"], true);
+  EXPECT_LT((readTransform(outputOf("transform.txt")).translation() - truth().translation()).norm(), 0.02);
+}
+
+TEST_F(AlignCommand, ScansFarApartAreRefusedAndDrawn) {
+  align();
+  for (const char* guess : {"3000,-3000,0,0", "1e7,0,0,0"}) {
+    SCOPED_TRACE(guess);
+    EXPECT_EQ(align({"--guess", guess}).out.rfind("not aligned: ", 0), 0u);
+    EXPECT_FALSE(std::filesystem::exists(outputOf("aligned.pcd")));
+    EXPECT_TRUE(std::filesystem::exists(outputOf("alignment.png")));
+  }
+}
+
+}  // namespace
+}  // namespace pcl_fft_ground::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command_fixture.h"
+#include "io/pose_table.h"
+#include "simulate/simulate_command.h"
+
+namespace pcl_fft_ground::cli {
+
+/// A survey of the first four sub-maps along a transect of a pipe field, made once.
+class SurveyFixture : public CommandFixture {
+ protected:
+  static void SetUpTestSuite() {
+    site_ = makeTemporaryFolder();
+    ASSERT_FALSE(site_.empty());
+    run(runSimulate, {"survey", "pipes", "-o", site_, "--points", "60000", "--seed", "1"});
+    for (int i = 4; i < 26; ++i)
+      std::filesystem::remove(site_ + (i < 10 ? "/submap_0" : "/submap_") + std::to_string(i) + ".pcd");
+  }
+  static void TearDownTestSuite() { std::filesystem::remove_all(site_); }
+
+  static std::string submap(int i) { return site_ + "/submap_0" + std::to_string(i) + ".pcd"; }
+  static Words with(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  /// A folder with the first two sub-maps only.
+  std::string copyOfTwo(const std::string& name) const {
+    std::filesystem::create_directory(pathOf(name));
+    for (const char* file : {"/submap_00.pcd", "/submap_01.pcd", "/truth.csv"})
+      std::filesystem::copy_file(site_ + file, pathOf(name) + file);
+    return pathOf(name);
+  }
+
+  static inline std::string site_;
+};
+
+}  // namespace pcl_fft_ground::cli
