@@ -32,12 +32,13 @@ MapPage layOutMap(const GridImage& image, MapKey key) {
   const double page_width = std::max(kNarrowest, kLeft + width + (bar_beside ? 125.0 : 45.0));
   const double left = kLeft + std::floor(0.5 * (page_width - kLeft - width - (bar_beside ? 125.0 : 45.0)));
   const Rectangle area{left, kTop, width, height};
-  MapPage page{{area, {image.origin.x(), high.x()}, {image.origin.y(), high.y()}}, {}, 0, 0};
+  MapPage page{{area, {image.origin.x(), high.x()}, {image.origin.y(), high.y()}}, {}, 0, 0, {}};
   const double room_below = bar_beside ? 56.0 : key == MapKey::COLOUR_BAR ? 138.0 : 88.0;
   const double wide = std::max(width, kNarrowest - kLeft - 45.0);
   page.key = bar_beside ? Rectangle{area.right() + 24.0, kTop + 20.0, 18.0, height - 40.0}
                         : Rectangle{std::floor(left + 0.5 * (width - wide)) + 20.0, area.bottom() + 66.0,
                                     wide - 40.0, 16.0};
+  page.frame = image.frame;
   page.width = static_cast<int>(page_width);
   page.height = static_cast<int>(kTop + height + room_below);
   return page;
@@ -52,8 +53,8 @@ Canvas startMap(const MapPage& page, const std::string& title, const Pixels& map
   const Rectangle& area = page.plot.area;
   canvas.image(area, map);
   drawFrame(canvas, page.plot);
-  drawLowerAxis(canvas, page.plot, ticksFor(page.plot.x, area.width, 90.0), "x in the level frame [m]");
-  drawLeftAxis(canvas, page.plot, ticksFor(page.plot.y, area.height, 55.0), "y in the level frame [m]");
+  drawLowerAxis(canvas, page.plot, ticksFor(page.plot.x, area.width, 90.0), "x in " + page.frame + " [m]");
+  drawLeftAxis(canvas, page.plot, ticksFor(page.plot.y, area.height, 55.0), "y in " + page.frame + " [m]");
   TextStyle style{17.0, Anchor::MIDDLE, kInk, Weight::BOLD};
   style.max_width = page.width - 30.0;
   canvas.text({0.5 * page.width, 28.0}, title, style);

@@ -18,6 +18,7 @@ struct MapPage {
   Rectangle key;
   int width = 0;
   int height = 0;
+  std::string frame;  ///< whose x and y axes the plot has
 };
 
 /// The page for a grid. The longest side of every map has one length; low maps have a lying colour bar below

@@ -20,6 +20,7 @@ struct GridImage {
   Eigen::ArrayXXd values;                            ///< NaN where nothing is known
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< lower corner of cell (0, 0) [m]
   double cell_size = 1.0;                            ///< [m], > 0
+  std::string frame = "the level frame";             ///< whose x and y axes these are
 };
 
 /// The spectrum of an elevation grid before and after the low-pass.

@@ -51,6 +51,7 @@ class SitePicture {
     const Eigen::Array2i cells = (extent.sizes() / image_.cell_size).array().ceil().cast<int>() + 1;
     image_.values = Eigen::ArrayXXd::Constant(cells.x(), cells.y(), std::numeric_limits<double>::quiet_NaN());
     image_.origin = extent.min();
+    image_.frame = "the world";
   }
 
   void add(const Eigen::Vector3d& place) {
