@@ -40,12 +40,13 @@ refused() {
 # Help and version.
 expect 0 --version
 [ "$(cat out)" = "pcl_fft_ground $version" ] || fail "the version is '$(cat out)', not $version"
-for words in "--help" "-h" "help" "segment --help" "segment -h" "simulate --help" "segment --help --cell-size 0"; do
+for words in "--help" "-h" "help" "segment --help" "segment -h" "segment --help --cell-size 0" "simulate --help" \
+  "simulate survey --help" "evaluate --help" "align --help" "survey --help"; do
   # shellcheck disable=SC2086 # words are words
   expect 0 $words
   silent err "'$words'"
   grep -q '^Usage: pcl_fft_ground ' out || fail "'$words' shows no usage"
-  [ "$(wc -L < out)" -le 114 ] || fail "'$words' has long lines"
+  [ "$(wc -L < out)" -le 120 ] || fail "'$words' has long lines"
 done
 
 # Results: a summary on stdout; JSON and nothing else with --json; nothing with --quiet.

@@ -23,9 +23,9 @@ constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground evaluate CLOUD... [
 
 Runs segmentation methods on labelled clouds (label 1 object, 0 ground; other labels are not scored) and prints how well
 they tell the two apart: tpr and tnr are the shares of object and of ground points that were found. surface_rmse [m] is
-that of the estimated ground surface: against the true heights where the cloud has them (a floating-point field 'ground',
-as of simulate --ground-heights), else against the points labelled ground. All clouds and methods share one set of
-parameters. Several clouds are set side by side, too, as in the paper's Table I.
+that of the estimated ground surface: against the true heights where the cloud has them (a floating-point field
+'ground', as of simulate --ground-heights), else against the points labelled ground. All clouds and methods share one
+set of parameters. Several clouds are set side by side, too, as in the paper's Table I.
 
 )";
 

@@ -34,8 +34,8 @@ DIR is made if need be and receives
                                          points tell where it is supported by ground seen nearby, and how
                                          uncertain it is [m]
   segments.csv                           place, extent and height of each segment
-  report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores; and the origin
-                                         that is subtracted in all of these where coordinates are large
+  report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores; the origin that
+                                         is subtracted in all of these where coordinates are large
   elevation.png ground.png spectrum.png labels.png segments.png
 Where CLOUD has a label field, TPR, TNR and F1 of the objects are printed.
 

@@ -32,8 +32,8 @@ DIR is made if need be and receives
   pairs.csv                         all results, a line per pair and method, written after each: a run that was broken
                                     off goes on where it stopped, if its parameters and sub-maps are the same
   poses.csv                         pose of each sub-map by the global alignment: submap,x,y,z,qx,qy,qz,qw
-  merged.pcd                        all sub-maps in one, a point per cubic centimetre, with the number of the sub-map; far
-                                    from the world's origin the VIEWPOINT gives what is subtracted
+  merged.pcd                        all sub-maps in one, a point per cubic centimetre, with the number of the sub-map;
+                                    where coordinates are large the VIEWPOINT gives what is subtracted
   site_before.png site_after.png    the site as navigation has it and after global alignment
   survey.json parameters.json       both tables and the global alignment; the parameters
 
