@@ -27,7 +27,7 @@ Commands:
   simulate wreck|pipes|reef -o FILE  make a labelled scan of the sea floor
   simulate survey wreck|pipes -o DIR make the overlapping sub-maps of a survey, with true poses
   align    REFERENCE MOVING -o DIR   align two overlapping scans by their segments
-  survey   FOLDER -o DIR             align all sub-maps of a survey and map the site
+  survey   FOLDER... -o DIR          align all sub-maps of surveys and map the sites
 
 `pcl_fft_ground COMMAND --help` explains a command. Also: --help, --version.
 

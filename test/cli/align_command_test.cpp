@@ -69,6 +69,30 @@ TEST_F(AlignCommand, ARefusalIsAResultAndLeavesNoTransform) {
   EXPECT_NE(report["refusal"], "");
 }
 
+TEST_F(AlignCommand, LargeCoordinatesAreThoseOfTheFiles) {
+  const Cloud reference = readCloud(submap(0)), moving = readCloud(submap(1));
+  const Eigen::Translation3d far_away(500000, 6000000, 0);
+  const Eigen::Isometry3d reference_file = far_away * reference.viewpoint.asTransform();
+  const Eigen::Isometry3d moving_file = far_away * moving.viewpoint.asTransform();
+  makeMoved("reference.pcd", reference, reference_file);
+  makeMoved("moving.pcd", moving, moving_file);
+  const json report = json::parse(run(runAlign, {pathOf("reference.pcd"), pathOf("moving.pcd"), "-o",
+                                                 output(), "--max-object-size", "1", "--json"})
+                                      .out);
+  ASSERT_EQ(report["accepted"], true);
+  const Eigen::Isometry3d found = readTransform(outputOf("transform.txt"));
+  const Eigen::Vector3d place = moving_file.translation();
+  EXPECT_LT((found * place - reference_file * truth() * moving_file.inverse() * place).norm(), 0.02);
+
+  const Cloud read = readCloud(pathOf("moving.pcd")), aligned = readCloud(outputOf("aligned.pcd"));
+  const Eigen::Vector3d first = (*read.points)[0].getVector3fMap().cast<double>() + read.origin;
+  const Eigen::Vector3d moved = (*aligned.points)[0].getVector3fMap().cast<double>();
+  EXPECT_LT((aligned.viewpoint.asTransform() * moved - found * first).norm(), 1e-3);
+  EXPECT_EQ(aligned.viewpoint.position.y(), report["origin"][1].get<double>());
+  const json& match = report["matches"][0];
+  EXPECT_NEAR(match["moving"][1].get<double>(), 6000000, 20);
+}
+
 TEST_F(AlignCommand, AFarOutlierIsLeftOut) {
   pcl::PointCloud<pcl::PointXYZ> cloud = *readCloud(submap(1)).points;
   cloud.push_back({1e6F, -1e6F, 3e5F});

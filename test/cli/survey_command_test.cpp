@@ -2,12 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
-#include "io/cloud_file.h"
 #include "survey_fixture.h"
 
 namespace pcl_fft_ground::cli {
@@ -123,18 +121,10 @@ TEST_F(SurveyCommand, LargeCoordinatesKeepTheirMillimetres) {
   for (const int i : {0, 1}) {
     const Cloud cloud = readCloud(submap(i));
     const Eigen::Isometry3d file_from_points = far_away * cloud.viewpoint.asTransform();
-    std::ostringstream text;
-    text << std::setprecision(12);
-    for (std::size_t n = 0; n < cloud.points->size(); n += 2) {
-      const Eigen::Vector3d place = file_from_points * (*cloud.points)[n].getVector3fMap().cast<double>();
-      text << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
-    }
     const NamedPose pose = readPoses(site_ + "/truth.csv").at(static_cast<std::size_t>(i));
     truth.push_back({pose.submap, far_away * pose.world_from_submap * file_from_points.inverse()});
     std::filesystem::create_directories(pathOf("far"));
-    const std::string count = std::to_string((cloud.points->size() + 1) / 2);
-    makeFile("far/" + pose.submap, "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH " + count +
-                                       "\nHEIGHT 1\nDATA ascii\n" + text.str());
+    makeMoved("far/" + pose.submap, cloud, file_from_points);
   }
   makeFile("far/truth.csv", asCsv(truth));
   const json report = json::parse(

@@ -4,10 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <iomanip>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "command_fixture.h"
+#include "io/cloud_file.h"
 #include "io/pose_table.h"
 #include "simulate/simulate_command.h"
 
@@ -36,6 +39,20 @@ class SurveyFixture : public CommandFixture {
     for (const char* file : {"/submap_00.pcd", "/submap_01.pcd", "/truth.csv"})
       std::filesystem::copy_file(site_ + file, pathOf(name) + file);
     return pathOf(name);
+  }
+
+  /// Every other point of a sub-map in other coordinates, in double, and without a VIEWPOINT.
+  void makeMoved(const std::string& name, const Cloud& cloud,
+                 const Eigen::Isometry3d& file_from_points) const {
+    std::ostringstream text;
+    text << std::setprecision(12);
+    for (std::size_t n = 0; n < cloud.points->size(); n += 2) {
+      const Eigen::Vector3d place = file_from_points * (*cloud.points)[n].getVector3fMap().cast<double>();
+      text << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
+    }
+    const std::string count = std::to_string((cloud.points->size() + 1) / 2);
+    makeFile(name, "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nWIDTH " + count + "\nHEIGHT 1\nDATA ascii\n" +
+                       text.str());
   }
 
   static inline std::string site_;

@@ -79,6 +79,7 @@ TEST_F(SurveyRefusals, WrongUsageNamesTheOptionAndWhatIsAllowed) {
   EXPECT_THROW(run(runAlign, {submap(0), "-o", output()}), UsageError);
   EXPECT_THROW(run(runAlign, {submap(0), submap(1)}), UsageError);
   EXPECT_THROW(run(runSurvey, {"-o", output()}), UsageError);
+  EXPECT_THROW(run(runSurvey, {"", "-o", output()}), UsageError);
   EXPECT_THROW(run(runSimulate, {"survey", "reef", "-o", output()}), UsageError);
   EXPECT_THROW(run(runSimulate, {"survey", "wreck", "-o", output(), "--noise", "9"}), UsageError);
 }

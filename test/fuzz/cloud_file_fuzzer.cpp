@@ -21,5 +21,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const pcl_fft_ground::cli::WorkError&) {
     // as promised
   }
+  std::filesystem::remove(path);
   return 0;
 }

@@ -1,4 +1,5 @@
-// Any points and any parameters: every point gets a label or the parameters are refused with a PCLException.
+// Any points and any parameters: the points are split in two or the parameters are refused with a
+// PCLException.
 
 #include <pcl/PointIndices.h>
 #include <pcl/exceptions.h>

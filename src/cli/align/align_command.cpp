@@ -1,7 +1,10 @@
 #include "align/align_command.h"
 
 #include <array>
+#include <cmath>
 #include <iostream>
+#include <optional>
+#include <string_view>
 
 #include "align/align_outputs.h"
 #include "align/scan_description.h"
@@ -63,7 +66,6 @@ po::options_description commandOptions() {
 
 /// "1,2,0,30" as a pose.
 Eigen::Isometry3d parseGuess(const std::string& text) {
-  constexpr double FARTHEST = 1e8;  // beyond any coordinates on Earth
   std::string words = text;
   for (char& c : words) c = c == ',' ? ' ' : c;
   std::string_view rest = words;
@@ -71,7 +73,7 @@ Eigen::Isometry3d parseGuess(const std::string& text) {
   bool valid = true;
   for (double& number : numbers) {
     const std::optional<double> parsed = parseNumber<double>(takeWord(rest));
-    valid = valid && parsed && std::abs(*parsed) <= FARTHEST;
+    valid = valid && parsed && std::abs(*parsed) <= Viewpoint::FARTHEST;
     number = parsed.value_or(0);
   }
   if (!valid || !takeWord(rest).empty())

@@ -31,18 +31,6 @@ ordered_json rowsOf(const Matrix& matrix) {
   return rows;
 }
 
-const char* nameOf(core::AlignmentMethod method) {
-  switch (method) {
-    case core::AlignmentMethod::SEGMENTS:
-      return "segments";
-    case core::AlignmentMethod::DENSE:
-      return "dense";
-    case core::AlignmentMethod::NONE:
-      break;
-  }
-  return "none";
-}
-
 std::vector<double> listOf(const Eigen::Vector3d& place) {
   return {place.x(), place.y(), place.z()};
 }
@@ -105,6 +93,18 @@ std::string panelTitle(const AlignedPair& pair, const ordered_json& report) {
 }
 
 }  // namespace
+
+const char* nameOf(core::AlignmentMethod method) {
+  switch (method) {
+    case core::AlignmentMethod::SEGMENTS:
+      return "segments";
+    case core::AlignmentMethod::DENSE:
+      return "dense";
+    case core::AlignmentMethod::NONE:
+      break;
+  }
+  return "none";
+}
 
 Eigen::Isometry3d transformOfFiles(const AlignedPair& pair) {
   return Eigen::Translation3d(pair.reference.cloud.origin) * pair.alignment.reference_from_moving *

@@ -26,6 +26,9 @@ struct AlignedPair {
   core::Alignment alignment;  ///< of the clouds' points
 };
 
+/// "segments", "dense" or "none".
+const char* nameOf(core::AlignmentMethod method);
+
 /// The transform between the coordinates of the two files, origins included.
 Eigen::Isometry3d transformOfFiles(const AlignedPair& pair);
 

@@ -40,7 +40,10 @@ Eigen::AlignedBox2d extentOf(const PairImage& image) {
   extend(image.reference.surface, Eigen::Isometry3d::Identity());
   extend(image.moving.surface, image.before);
   extend(image.moving.surface, image.after);
-  return extent;
+  // Mean points of objects alone may lie a voxel beyond those of all points.
+  const Eigen::Vector2d margin =
+      Eigen::Vector2d::Constant(2 * std::max(image.reference.voxel_size, image.moving.voxel_size));
+  return {extent.min() - margin, extent.max() + margin};
 }
 
 /// The cells of one panel.

@@ -66,7 +66,7 @@ core::Points usablePoints(const std::string& path, const Cloud& cloud) {
 }
 
 core::ScanCoverage coverageOf(const std::string& path, const core::Points& points) {
-  constexpr double CELLS_PER_VOXEL = 2.5;  // as in core::describeScan()
+  constexpr double CELLS_PER_VOXEL = 2.5;
   return namingFile(path,
                     [&] { return core::coverageOf(points, CELLS_PER_VOXEL * core::voxelSizeFor(points)); });
 }
@@ -84,6 +84,12 @@ core::ScanSegments describeCloud(const std::string& path, const Cloud& cloud, Se
   for (const pcl::index_t n : usable.indices)
     labels.push_back(is_object[static_cast<std::size_t>(n)] ? core::Label::OBJECT : core::Label::GROUND);
   return namingFile(path, [&] { return core::describeScan(usable.points, labels, parameters); });
+}
+
+core::ScanSegments describeAsGround(const std::string& path, const core::Points& points,
+                                    const core::SegmentParameters& parameters) {
+  const core::Labels labels(static_cast<std::size_t>(points.cols()), core::Label::GROUND);
+  return namingFile(path, [&] { return core::describeScan(points, labels, parameters); });
 }
 
 }  // namespace pcl_fft_ground::cli

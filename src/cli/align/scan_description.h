@@ -1,12 +1,11 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <string>
-#include <vector>
 
 #include "io/cloud_file.h"
 #include "methods/segmenter.h"
 #include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/core/scan_coverage.h"
 #include "pcl_fft_ground/core/segment.h"
 
 namespace pcl_fft_ground::cli {
@@ -15,7 +14,7 @@ namespace pcl_fft_ground::cli {
 /// \throws WorkError naming the file if none is finite
 core::Points usablePoints(const std::string& path, const Cloud& cloud);
 
-/// Where the points of a scan lie, as the description of the scan has it.
+/// Where the points of a scan lie, in cells chosen from their spacing.
 /// \throws WorkError naming the file if they are spread too widely
 core::ScanCoverage coverageOf(const std::string& path, const core::Points& points);
 
@@ -25,5 +24,10 @@ core::ScanCoverage coverageOf(const std::string& path, const core::Points& point
  */
 core::ScanSegments describeCloud(const std::string& path, const Cloud& cloud, Segmenter& segmenter,
                                  const core::SegmentParameters& parameters);
+
+/// Describes a scan for dense alignment: all of it is ground.
+/// \throws WorkError naming the file if the parameters do not suit it
+core::ScanSegments describeAsGround(const std::string& path, const core::Points& points,
+                                    const core::SegmentParameters& parameters);
 
 }  // namespace pcl_fft_ground::cli

@@ -24,7 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double large_coordinate = 1e4;  // [m]; the floats around it are 1 mm apart
 constexpr int neither_label = 2;
 
 using Coordinates = std::array<std::vector<double>, 3>;
@@ -81,7 +80,7 @@ double axisOrigin(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return std::abs(*middle) > large_coordinate ? std::round(*middle) : 0.0;
+  return std::abs(*middle) > LARGE_COORDINATE ? std::round(*middle) : 0.0;
 }
 
 /// The table with the first x, y and z replaced by those of `points`; all other fields as they are.
@@ -118,7 +117,7 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr toPoints(const Coordinates& xyz, const Eigen
   points->width = table.width;
   points->height = table.height;
   points->sensor_origin_.head<3>() = viewpoint.position.cast<float>();
-  points->sensor_orientation_ = viewpoint.rotation.cast<float>();
+  points->sensor_orientation_ = viewpoint.rotation.normalized().cast<float>();
   points->is_dense = true;
   for (std::size_t i = 0; i < points->size(); ++i) {
     auto& point = (*points)[i];

@@ -5,14 +5,17 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
 #include "io/cloud_fields.h"
 #include "io/pcd_cloud.h"
+#include "io/viewpoint.h"
 
 namespace pcl_fft_ground::cli {
+
+/// Coordinates beyond this are given relative to an origin: the floats around it are 1 mm apart [m].
+constexpr double LARGE_COORDINATE = 1e4;
 
 /// A cloud from a file, its coordinates relative to a whole-metre origin.
 ///

@@ -148,6 +148,8 @@ void parseViewpoint(const HeaderLines& lines, PcdHeader& header) {
                     " numbers, not the 7 of tx ty tz qw qx qy qz");
   }
   header.viewpoint.position = {numbers[0], numbers[1], numbers[2]};
+  if (header.viewpoint.position.cwiseAbs().maxCoeff() > Viewpoint::FARTHEST)
+    throw WorkError("the PCD header's VIEWPOINT lies more than 1e8 m from the origin");
   const Eigen::Quaterniond rotation(numbers[3], numbers[4], numbers[5], numbers[6]);
   if (rotation.norm() > 0) header.viewpoint.rotation = rotation;
 }

@@ -30,12 +30,14 @@ own, with its results in DIR/NAME of the folder; the tables are then printed for
 constexpr const char* HELP_AFTER = R"(
 DIR is made if need be and receives
   pairs.csv                         all results, a line per pair and method, written after each: a run that was broken
-                                    off goes on where it stopped, if its parameters and sub-maps are the same
+                                    off goes on where it stopped, if its parameters and sub-maps are the same.
+                                    Transforms are between the points less their `origins` in survey.json, if any
   poses.csv                         pose of each sub-map by the global alignment: submap,x,y,z,qx,qy,qz,qw
   merged.pcd                        all sub-maps in one, a point per cubic centimetre, with the number of the sub-map;
                                     where coordinates are large the VIEWPOINT gives what is subtracted
   site_before.png site_after.png    the site as navigation has it and after global alignment
-  survey.json parameters.json       both tables and the global alignment; the parameters
+  survey.json parameters.json       both tables and the global alignment; the parameters. Of several folders DIR has a
+                                    survey.json, too, of all of them
 
 Examples:
   pcl_fft_ground simulate survey wreck -o wreck --points 200000
@@ -49,6 +51,7 @@ Exit status: 0 done, 1 the work failed, 2 wrong usage.
 /// The report of a survey, written beside its other results.
 ordered_json report(const SurveyTask& task, const SurveyOutcome& outcome, const SurveyRequest& request) {
   ordered_json content = makeSurveyReport(outcome, request.mapping);
+  if (!outcome.origins.is_null()) content["origins"] = outcome.origins;
   content["parameters"] = task.parameters;
   content["parameters"]["navigation-sigma"] = request.trust.horizontal;
   content["parameters"]["heading-sigma"] = request.trust.heading;

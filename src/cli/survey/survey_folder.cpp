@@ -8,7 +8,6 @@
 #include "errors.h"
 #include "io/cloud_file.h"
 #include "io/pose_table.h"
-#include "pcl_fft_ground/core/segment.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

@@ -26,7 +26,8 @@ struct SurveyFolder {
 };
 
 /// The clouds (*.pcd, *.ply) in a folder, in the order of their names.
-/// \throws WorkError naming the folder, if it cannot be read or holds fewer than two
+/// \throws WorkError naming the folder, if it cannot be read or holds fewer than two, or the cloud whose name
+///         would break a table
 std::vector<std::string> listSubmaps(const std::string& folder);
 
 /** Reads all sub-maps of a folder once, one at a time.

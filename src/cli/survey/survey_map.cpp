@@ -1,8 +1,11 @@
 #include "survey/survey_map.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <unordered_set>
 
 #include "align/scan_description.h"
@@ -19,7 +22,6 @@ namespace {
 constexpr double MERGED_VOXEL = 0.01;  // [m]
 constexpr double PICTURE_CELL = 0.02;  // of the pictures, more for large sites [m]
 constexpr double MOST_CELLS = 3000;    // of the pictures along a side
-constexpr double LARGE = 10000;        // coordinates from here on are given relative to an origin [m]
 
 /// The cubes of a lattice that points have fallen into.
 class VoxelCount {
@@ -85,16 +87,15 @@ Eigen::AlignedBox2d siteExtent(const SurveyFolder& survey, const SurveyPoses& po
 }
 
 /// What is subtracted from the coordinates of the site, so that floats hold them: whole metres.
-Eigen::Vector3d originOf(const Eigen::AlignedBox2d& extent) {
-  const Eigen::Vector2d centre = extent.center();
-  return {std::abs(centre.x()) > LARGE ? std::round(centre.x()) : 0.0,
-          std::abs(centre.y()) > LARGE ? std::round(centre.y()) : 0.0, 0.0};
+Eigen::Vector3d originOf(const SurveyFolder& survey, const SurveyPoses& poses) {
+  const Eigen::Vector3d place = poses.global.front() * survey.submaps.front().centroid;
+  return (place.array().abs() > LARGE_COORDINATE).select(place.array().round(), 0.0);
 }
 
 /// All that is gathered while the sub-maps pass by.
 struct Site {
-  explicit Site(const Eigen::AlignedBox2d& extent)
-      : origin(originOf(extent)), before(extent), after(extent) {}
+  Site(const Eigen::AlignedBox2d& extent, const Eigen::Vector3d& subtracted)
+      : origin(subtracted), before(extent), after(extent) {}
 
   void add(const core::Points& points, std::size_t submap, const SurveyPoses& poses) {
     for (Eigen::Index n = 0; n < points.cols(); ++n) {
@@ -141,7 +142,7 @@ void drawSite(const std::string& path, const std::string& title, const SitePictu
 
 SiteCrispness writeSiteMap(const std::string& folder, const SurveyFolder& survey, const SurveyPoses& poses,
                            const std::function<void(std::size_t)>& report) {
-  Site site(siteExtent(survey, poses));
+  Site site(siteExtent(survey, poses), originOf(survey, poses));
   for (std::size_t i = 0; i < survey.submaps.size(); ++i) {
     report(i + 1);
     const std::string& path = survey.submaps[i].path;

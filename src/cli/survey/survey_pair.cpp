@@ -136,6 +136,7 @@ std::string asCsv(const std::vector<PairResult>& results, const std::vector<std:
 std::vector<PairResult> readPairs(const std::string& path, const std::vector<std::string>& names) {
   std::ifstream file(path);
   std::string line;
+  if (!file) throw WorkError(path + ": cannot be read");
   if (!std::getline(file, line)) return {};
   if (line != HEADER) throw WorkError(path + ": is no table of pairs; delete it to start anew");
   std::vector<PairResult> results;

@@ -52,8 +52,9 @@ struct PairResult {
   std::optional<double> translation_error;  ///< of the moving sub-map's centroid [m], if the truth is known
   std::optional<double> rotation_error;     ///< [degrees]
   double seconds = 0;                       ///< of the alignment after segmentation
-  Eigen::Isometry3d reference_from_moving = Eigen::Isometry3d::Identity();  ///< the guess if not aligned
-  core::MotionCovariance covariance = core::MotionCovariance::Zero();       ///< of the above, if aligned
+  /// Of the points less their sub-maps' origins; the guess if not aligned.
+  Eigen::Isometry3d reference_from_moving = Eigen::Isometry3d::Identity();
+  core::MotionCovariance covariance = core::MotionCovariance::Zero();  ///< of the above, if aligned
 
   /// delta Nx of Sec. V-D2 [%]; 0 if not aligned
   double crispnessChange() const;
@@ -63,8 +64,10 @@ struct PairResult {
 /// The results as CSV, sub-maps by their names.
 std::string asCsv(const std::vector<PairResult>& results, const std::vector<std::string>& names);
 
-/** Reads what asCsv() wrote.
- * \throws WorkError naming the file, if it cannot be read or is no such table */
+/** Reads what asCsv() wrote; an empty file holds no results.
+ *
+ * \throws WorkError naming the file, if it cannot be read or is no such table
+ */
 std::vector<PairResult> readPairs(const std::string& path, const std::vector<std::string>& names);
 
 }  // namespace pcl_fft_ground::cli

@@ -1,9 +1,9 @@
 #include "survey/survey_request.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "command_line.h"
 #include "errors.h"
@@ -54,26 +54,28 @@ double within(const po::variables_map& values, const char* option, double lowest
   throw UsageError(message.str());
 }
 
+/// The folder, whatever the way to it. \throws UsageError for an empty name
+fs::path absolutePath(const std::string& folder) {
+  if (folder.empty()) throw UsageError("survey: the name of a folder is empty");
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
 /// All that the results depend on: other parameters make other results.
 ordered_json describe(const std::string& folder, const SurveyRequest& request) {
-  ordered_json parameters{{"folder", folder}, {"alignment", request.settings.described}};
+  ordered_json parameters{{"folder", absolutePath(folder).string()},
+                          {"alignment", request.settings.described}};
   for (const Segmenter& segmenter : request.segmenters)
     parameters["segmentation"][segmenter.method] = segmenter.parameters;
   parameters["submaps"] = fingerprintOf(folder);
   return parameters;
 }
 
-/// The folder's own name, whatever the way to it.
-std::string nameOf(const std::string& folder) {
-  const fs::path path = fs::absolute(folder).lexically_normal();
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
-
 /// A survey for each folder; of several each has a folder of its own name for its results.
 std::vector<SurveyTask> tasksOf(const std::vector<std::string>& folders, const SurveyRequest& request) {
   std::vector<SurveyTask> tasks;
   for (const std::string& folder : folders) {
-    const std::string name = nameOf(folder);
+    const std::string name = absolutePath(folder).filename().string();
     for (const SurveyTask& other : tasks)
       if (other.name == name)
         throw UsageError("survey: " + other.folder + " and " + folder +

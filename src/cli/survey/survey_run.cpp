@@ -52,13 +52,16 @@ Placement placementOf(const char* name, std::size_t voxels, const SurveyFolder& 
   return placement;
 }
 
-/// Solves for the poses. What makes it impossible has been read from the record of the pairs.
+/// Solves for the poses.
 SurveyPoses posesOf(const SurveyTask& task, const SurveyFolder& survey, const std::vector<PairResult>& pairs,
                     const SurveyRequest& request) {
   try {
     return solveSurvey(survey, pairs, request.mapping, request.trust);
-  } catch (const std::exception& error) {
-    throw WorkError(task.directory + "/pairs.csv: " + error.what() + "; delete it to start anew");
+  } catch (const std::logic_error& error) {  // of the core, about covariances and the like
+    throw WorkError(task.folder + ": global alignment by the pairs in " + task.directory +
+                    "/pairs.csv: " + error.what());
+  } catch (const std::runtime_error& error) {
+    throw WorkError(task.folder + ": global alignment: " + error.what());
   }
 }
 
@@ -72,6 +75,9 @@ SurveyOutcome processSurvey(const SurveyTask& task, SurveyRequest& request, Prog
   SurveyOutcome outcome;
   outcome.name = task.name;
   outcome.submaps = survey.submaps.size();
+  for (const Submap& submap : survey.submaps)
+    if (!submap.origin.isZero())
+      outcome.origins[submap.name] = {submap.origin.x(), submap.origin.y(), submap.origin.z()};
   outcome.pairs = alignPairs(task, request, survey, progress);
   const SurveyPoses poses = posesOf(task, survey, outcome.pairs, request);
   outcome.edges = poses.edges;

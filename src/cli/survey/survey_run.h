@@ -15,7 +15,7 @@ namespace pcl_fft_ground::cli {
 
 /// The sub-maps placed in one way.
 struct Placement {
-  const char* name;
+  const char* name = "";
   std::size_t voxels = 0;            ///< of 2 cm that all sub-maps together occupy: the fewer, the crisper
   std::optional<PoseErrors> errors;  ///< where the truth is known
 };
@@ -25,8 +25,9 @@ struct SurveyOutcome {
   std::string name;
   std::size_t submaps = 0;
   std::vector<PairResult> pairs;
-  std::size_t edges = 0;                ///< aligned pairs that the global alignment rests on
-  std::size_t rejected_edges = 0;       ///< of these, such that it found false
+  nlohmann::ordered_json origins;  ///< by sub-map, what is subtracted from its coordinates, where that is
+  std::size_t edges = 0;           ///< aligned pairs that the global alignment rests on
+  std::size_t rejected_edges = 0;  ///< of these, such that it found false
   std::array<Placement, 3> placements;  ///< by navigation, chained and by the global alignment
 };
 

@@ -44,14 +44,12 @@ const core::ScanSegments& SurveyScans::segments(const std::string& method, std::
 
 core::ScanSegments SurveyScans::describe(const std::string& method, std::size_t submap) {
   const Loaded& loaded = load(submap);
-  if (method == DENSE_ICP) {
-    const core::Labels all_ground(static_cast<std::size_t>(loaded.points.cols()), core::Label::GROUND);
-    return core::describeScan(loaded.points, all_ground, settings_.segments);
-  }
+  const std::string& path = submaps_[submap].path;
+  if (method == DENSE_ICP) return describeAsGround(path, loaded.points, settings_.segments);
   const auto segmenter = std::find_if(segmenters_.begin(), segmenters_.end(),
                                       [&](const Segmenter& s) { return s.method == method; });
   if (segmenter == segmenters_.end()) throw std::invalid_argument("no segmenter for method " + method);
-  return describeCloud(submaps_[submap].path, loaded.cloud, *segmenter, settings_.segments);
+  return describeCloud(path, loaded.cloud, *segmenter, settings_.segments);
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -26,7 +26,8 @@ class SurveyScans {
   SurveyScans(const std::vector<Submap>& submaps, const AlignmentSettings& settings,
               std::vector<Segmenter>& segmenters);
 
-  /// The points of a sub-map; the reference holds until two other sub-maps are asked for.
+  /// The points of a sub-map; the reference holds until the points or segments of two other
+  /// sub-maps are asked for.
   /// \throws WorkError naming the file
   const core::Points& points(std::size_t submap);
 

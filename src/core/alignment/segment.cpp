@@ -96,14 +96,21 @@ Eigen::AlignedBox3f boxWithoutFarPoints(const Points& points) {
   return box;
 }
 
-/// The mean points of the voxels that the columns occupy, as far as they belong to the scan proper.
-Points objectMeans(const PointsView& points, const std::vector<Eigen::Index>& columns,
-                   const ScanSegments& scan) {
-  const Bounds bounds = boundsOf(scan.surface);
-  const Eigen::AlignedBox3f box((bounds.low - scan.voxel_size).cast<float>().matrix(),
-                                (bounds.high + scan.voxel_size).cast<float>().matrix());
-  return pointsWithin(voxelMeans(gathered(points, columns), scan.voxel_size), box);
-}
+/// Finds the mean points of the voxels that objects occupy, as far as they belong to the scan proper.
+class ObjectMeans {
+ public:
+  explicit ObjectMeans(const ScanSegments& scan) : voxel_size_(scan.voxel_size) {
+    const Bounds bounds = boundsOf(scan.surface);
+    box_ = {(bounds.low - voxel_size_).cast<float>().matrix(),
+            (bounds.high + voxel_size_).cast<float>().matrix()};
+  }
+
+  Points of(const PointsView& points) const { return pointsWithin(voxelMeans(points, voxel_size_), box_); }
+
+ private:
+  double voxel_size_;
+  Eigen::AlignedBox3f box_;
+};
 
 /// A scan without segments yet.
 ScanSegments describeSurface(const PointsView& points, const SegmentParameters& parameters) {
@@ -161,7 +168,7 @@ ScanSegments describeScan(const PointsView& points, const Labels& labels,
   for (std::size_t n = 0; n < labels.size(); ++n)
     if (labels[n] == Label::OBJECT) objects.push_back(static_cast<Eigen::Index>(n));
   ScanSegments scan = describeSurface(points, parameters);
-  scan.objects = objectMeans(points, objects, scan);
+  scan.objects = ObjectMeans(scan).of(gathered(points, objects));
   clusterObjects(scan);
   return scan;
 }
@@ -169,13 +176,14 @@ ScanSegments describeScan(const PointsView& points, const Labels& labels,
 ScanSegments describeScan(const PointsView& points, const std::vector<std::vector<Eigen::Index>>& clusters,
                           const SegmentParameters& parameters) {
   ScanSegments scan = describeSurface(points, parameters);
+  const ObjectMeans object_means(scan);
   std::vector<Eigen::Index> objects;
   std::vector<Points> means;
   for (const std::vector<Eigen::Index>& cluster : clusters) {
     objects.insert(objects.end(), cluster.begin(), cluster.end());
-    means.push_back(objectMeans(points, cluster, scan));
+    means.push_back(object_means.of(gathered(points, cluster)));
   }
-  scan.objects = objectMeans(points, objects, scan);
+  scan.objects = object_means.of(gathered(points, objects));
   addSegments(std::move(means), scan);
   return scan;
 }
@@ -185,7 +193,7 @@ ScanSegments coarsened(const ScanSegments& scan, double voxel_size) {
   SegmentParameters parameters = scan.parameters;
   parameters.voxel_size = voxel_size;
   ScanSegments coarse = describeSurface(scan.surface, parameters);
-  coarse.objects = voxelMeans(scan.objects, voxel_size);
+  coarse.objects = ObjectMeans(coarse).of(scan.objects);
   clusterObjects(coarse);
   return coarse;
 }
