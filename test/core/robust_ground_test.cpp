@@ -259,6 +259,13 @@ TEST(RobustGround, OfNoPointsHasNoCells) {
   EXPECT_TRUE(labelRobust(Points(3, 0), ground).labels.empty());
 }
 
+TEST(RobustGround, OfAStripHasNoMoreThanFourCellsToAPoint) {
+  Points strip(3, 400);
+  for (Eigen::Index n = 0; n < strip.cols(); ++n)
+    strip.col(n) << 1e4F * static_cast<float>(n), static_cast<float>(n % 2), 0;
+  EXPECT_LE(groundOf(strip, largestObject(1e-3)).elevation.observed.size(), 1610);
+}
+
 TEST(RobustGround, OfDegenerateCloudsIsFinite) {
   Points collinear(3, 50);
   for (Eigen::Index n = 0; n < 50; ++n) collinear.col(n) << 0.1F * static_cast<float>(n), 0, 0;

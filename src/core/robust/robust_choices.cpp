@@ -22,7 +22,9 @@ double chooseCellSize(const std::optional<double>& given, double max_object_size
                       const Eigen::Array2d& extents, Eigen::Index points, Choices& choices) {
   constexpr double CELLS_PER_OBJECT = 36, CELLS_PER_POINT = 4;
   const double by_object = max_object_size / CELLS_PER_OBJECT;
-  const double by_spacing = std::sqrt(extents.prod() / (CELLS_PER_POINT * static_cast<double>(points)));
+  const double most_cells = CELLS_PER_POINT * static_cast<double>(points);
+  // A strip narrower than a cell has one row of them.
+  const double by_spacing = std::max(std::sqrt(extents.prod() / most_cells), extents.maxCoeff() / most_cells);
   const double least = 1e-6 * std::max(1.0, extents.maxCoeff());
   return choose(given, std::max({by_object, by_spacing, least}), "cell_size",
                 by_object > by_spacing ? "a thirty-sixth of the largest object"
