@@ -52,7 +52,8 @@ struct AlignmentParameters {
   Matching matching = Matching::LOCAL;  ///< which version
   Fallback fallback = Fallback::DENSE;  ///< what follows where segments do not suffice
   std::size_t min_matches = 3;          ///< N_seg: fewer matched segments give no alignment, >= 1
-  double min_score = 0.80;              ///< least share of object points that must agree, [0, 1]
+  /// Least share of object points that must agree, [0, 1]; three quarters of it for the dense fallback.
+  double min_score = 0.80;
   /// Largest standard deviation, predicted horizontally, and largest root mean square of the distances that
   /// are left between the surfaces [m], > 0: the precision that is asked for, whatever the resolution.
   double max_sigma = 0.05;

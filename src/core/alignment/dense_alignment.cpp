@@ -30,7 +30,9 @@ constexpr double TEST_SHIFT = 2.5;  // by which a wrong transform is off, to see
 constexpr double TELLING_DISTANCE = 0.5;  // the same for the contrast: what one scan alone sees counts little
 constexpr double LEAST_CONTRAST = 2;      // factor by which it has to raise the mean squared distance
 constexpr std::size_t TELLING_OBJECTS = 50;  // object points seen by both that have to agree
-constexpr double ROUGHLY = 0.5;              // share of the least score that makes a closer look worth while
+constexpr double SHARE_OF_SCORE =
+    0.75;                        // of min_score that does: the ground has to fit, too, and nowhere else
+constexpr double ROUGHLY = 0.5;  // share of the least score that makes a closer look worth while
 
 /// ICP of the surfaces of two scans, ground included.
 class DenseIcp {
@@ -134,7 +136,7 @@ Alignment accepted(const ScanPair& pair, const IcpResult& result, const Agreemen
 /// Makes what dense ICP came to precise. \return the result or, if it does not pass the gates, why not
 Alignment refineOnPlanes(const ScanPair& pair, DenseIcp& icp, const IcpResult& rough,
                          const AlignmentScore& score) {
-  const double least_score = pair.parameters().min_score;
+  const double least_score = SHARE_OF_SCORE * pair.parameters().min_score;
   const Agreement at_first = score.of(rough.correction);
   const std::string far_off = reasonAgainstMeeting(pair, icp, rough, at_first, ROUGHLY * least_score);
   if (!far_off.empty()) return refused(pair, far_off);
