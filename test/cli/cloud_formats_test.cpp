@@ -188,6 +188,7 @@ TEST_F(CloudFile, PcdHeadersWithBadFieldsAreRefused) {
   expectError("m.pcd", asciiPcd("FIELDS\n" + one, "1 2 3\n"), "FIELDS");
   expectError("n.pcd", asciiPcd(xyz_header + "VIEWPOINT 0 0 0 1 0 0\n" + one, "1 2 3\n"), "VIEWPOINT");
   expectError("o.pcd", asciiPcd(xyz_header + "VIEWPOINT 0 0 nan 1 0 0 0\n" + one, "1 2 3\n"), "VIEWPOINT");
+  expectError("v.pcd", asciiPcd(xyz_header + "VIEWPOINT 0 -2e8 0 1 0 0 0\n" + one, "1 2 3\n"), "1e8 m");
   expectError("p.pcd", xyz_header + one + "DATA fancy\n1 2 3\n", "'fancy'");
   expectError("q.pcd", xyz_header + one, "DATA");
   expectError("r.pcd", asciiPcd(xyz_header + one, "1 2 three\n"), "'1 2 three'");

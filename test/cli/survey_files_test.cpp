@@ -47,6 +47,13 @@ TEST_F(SurveyFiles, PosesAreReadAsTheyWereWritten) {
   EXPECT_TRUE(poses[1].world_from_submap.isApprox(somePose().inverse(), 1e-10));
 }
 
+TEST_F(SurveyFiles, PosesMayHaveLineEndsOfWindows) {
+  const std::string path = makeFile("poses.csv", "submap,x,y,z,qx,qy,qz,qw\r\na.pcd,1,2,3,0,0,0,1\r\n");
+  const std::vector<NamedPose> poses = readPoses(path);
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0].world_from_submap.translation(), Eigen::Vector3d(1, 2, 3));
+}
+
 TEST_F(SurveyFiles, DamagedPosesAreRefusedNamingTheFile) {
   const std::string header = "submap,x,y,z,qx,qy,qz,qw\n";
   for (const std::string& content : {std::string("x,y\n"), header + "a,1,2,3\n",
@@ -78,6 +85,11 @@ TEST_F(SurveyFiles, PairsAreReadAsTheyWereWritten) {
   EXPECT_EQ(read[0].crispness_after, given.crispness_after);
   EXPECT_TRUE(read[0].reference_from_moving.isApprox(somePose(), 1e-10));
   EXPECT_TRUE(read[0].covariance.isApprox(given.covariance, 1e-10));
+}
+
+TEST_F(SurveyFiles, AnEmptyFileHoldsNoPairs) {
+  EXPECT_TRUE(readPairs(makeFile("pairs.csv", ""), {"a.pcd", "b.pcd"}).empty());
+  EXPECT_THROW(readPairs(pathOf("missing.csv"), {"a.pcd", "b.pcd"}), WorkError);
 }
 
 TEST_F(SurveyFiles, DamagedPairsAreRefusedNamingTheFile) {

@@ -20,7 +20,8 @@ namespace pcl_fft_ground::core {
  * \param statistics summarise() of these points: they tell nearly every scan to be compact without another
  * look
  * \return ascending column numbers of the far points; empty for nearly every scan
- * \note O(n), and O(1) for compact scans. The result depends on the set of the points only, not on their order.
+ * \note O(n), and O(1) for compact scans. The result depends on the set of the points only, not on their
+ * order.
  */
 PCL_FFT_GROUND_CORE_EXPORT std::vector<Eigen::Index> findFarPoints(const PointsView& points,
                                                                    const PointStatistics& statistics);
