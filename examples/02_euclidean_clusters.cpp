@@ -7,8 +7,8 @@
 
 #include <iostream>
 
-#include "pcl_fft_ground/core/simulation.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
+#include "pcl_fft_ground/simulation/simulation.h"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
 
 using Point = pcl::PointXYZ;

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <iostream>
 
-#include "pcl_fft_ground/core/simulation.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
+#include "pcl_fft_ground/simulation/simulation.h"
 
 int main() {
   pcl_fft_ground::core::SimulationParameters parameters;

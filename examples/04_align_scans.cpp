@@ -4,9 +4,9 @@
 
 #include <iostream>
 
-#include "pcl_fft_ground/core/survey_simulation.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
 #include "pcl_fft_ground/segment_icp.h"
+#include "pcl_fft_ground/simulation/survey_simulation.h"
 
 using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;

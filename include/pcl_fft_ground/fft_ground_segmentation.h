@@ -2,8 +2,8 @@
 
 #include <variant>
 
-#include "pcl_fft_ground/core/low_pass_ground.h"
-#include "pcl_fft_ground/core/robust_ground.h"
+#include "pcl_fft_ground/core/ground/low_pass_ground.h"
+#include "pcl_fft_ground/core/ground/robust_ground.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 
 namespace pcl_fft_ground {

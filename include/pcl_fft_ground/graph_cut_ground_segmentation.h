@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcl_fft_ground/core/graph_cut_ground.h"
+#include "pcl_fft_ground/core/ground/graph_cut_ground.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 
 namespace pcl_fft_ground {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "pcl_fft_ground/core/frame.h"
-#include "pcl_fft_ground/core/ground_surface.h"
-#include "pcl_fft_ground/core/labels.h"
-#include "pcl_fft_ground/core/point_statistics.h"
-#include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/core/ground/ground_surface.h"
+#include "pcl_fft_ground/core/ground/labels.h"
+#include "pcl_fft_ground/core/scan/frame.h"
+#include "pcl_fft_ground/core/scan/point_statistics.h"
+#include "pcl_fft_ground/core/scan/points.h"
 #include "pcl_fft_ground/export.h"
 
 namespace pcl_fft_ground {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "pcl_fft_ground/core/nearest_neighbours.h"
+#include "pcl_fft_ground/core/align/nearest_neighbours.h"
 #include "pcl_fft_ground/registration_export.h"
 
 namespace pcl_fft_ground {

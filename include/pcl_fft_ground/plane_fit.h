@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "pcl_fft_ground/core/plane_surface.h"
-#include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/core/ground/plane_surface.h"
+#include "pcl_fft_ground/core/scan/points.h"
 #include "pcl_fft_ground/export.h"
 
 namespace pcl_fft_ground {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pcl_fft_ground/core/segment_alignment.h"
+#include "pcl_fft_ground/core/align/segment_alignment.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 #include "pcl_fft_ground/registration_export.h"
 

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "align/align_command.h"
+#include "commands/align/align_command.h"
+#include "commands/evaluate/evaluate_command.h"
+#include "commands/segment/segment_command.h"
+#include "commands/simulate/simulate_command.h"
+#include "commands/survey/survey_command.h"
 #include "errors.h"
-#include "evaluate/evaluate_command.h"
 #include "pcl_fft_ground/version.h"
-#include "segment/segment_command.h"
-#include "simulate/simulate_command.h"
-#include "survey/survey_command.h"
 
 namespace {
 

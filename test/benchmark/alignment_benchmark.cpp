@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "pcl_fft_ground/core/simulation.h"
-#include "survey/survey_table.h"
+#include "commands/survey/survey_table.h"
+#include "pcl_fft_ground/simulation/simulation.h"
 #include "survey_trials.h"
 #include "trial_file.h"
 

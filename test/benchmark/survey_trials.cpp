@@ -6,7 +6,7 @@
 #include <boost/random/uniform_real_distribution.hpp>
 #include <ctime>
 
-#include "pcl_fft_ground/core/pairing.h"
+#include "pcl_fft_ground/core/survey/pairing.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pcl_fft_ground/core/segment_alignment.h"
-#include "pcl_fft_ground/core/survey_simulation.h"
+#include "pcl_fft_ground/core/align/segment_alignment.h"
+#include "pcl_fft_ground/simulation/survey_simulation.h"
 
 /// A sub-map of a simulated survey as alignment sees it, with its true pose.
 struct TrialScan {

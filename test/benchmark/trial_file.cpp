@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <stdexcept>
 
-#include "align/align_outputs.h"
+#include "commands/align/align_outputs.h"
 
 TrialFile::TrialFile(const std::string& path) {
   if (path.empty()) return;

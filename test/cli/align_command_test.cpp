@@ -1,4 +1,4 @@
-#include "align/align_command.h"
+#include "commands/align/align_command.h"
 
 #include <Eigen/Geometry>
 #include <fstream>

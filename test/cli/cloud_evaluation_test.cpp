@@ -1,4 +1,4 @@
-#include "evaluate/cloud_evaluation.h"
+#include "commands/evaluate/cloud_evaluation.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

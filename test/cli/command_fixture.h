@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "commands/segment/segment_command.h"
 #include "io/cloud_fields.h"
 #include "io/pcd_cloud.h"
-#include "segment/segment_command.h"
 #include "temporary_folder.h"
 
 namespace pcl_fft_ground::cli {

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "command_fixture.h"
-#include "evaluate/evaluate_command.h"
-#include "simulate/simulate_command.h"
+#include "commands/evaluate/evaluate_command.h"
+#include "commands/simulate/simulate_command.h"
 
 namespace pcl_fft_ground::cli {
 

@@ -1,4 +1,4 @@
-#include "evaluate/evaluation_pictures.h"
+#include "commands/evaluate/evaluation_pictures.h"
 
 #include <algorithm>
 #include <map>

@@ -1,11 +1,11 @@
-#include "evaluate/evaluation_table.h"
+#include "commands/evaluate/evaluation_table.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <sstream>
 
-#include "evaluate/evaluation_files.h"
+#include "commands/evaluate/evaluation_files.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

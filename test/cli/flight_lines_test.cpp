@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "align/align_command.h"
 #include "command_fixture.h"
+#include "commands/align/align_command.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "drawing/pictures.h"
+#include "pictures/pictures.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "drawing/colour_map.h"
-#include "drawing/spectrum_raster.h"
 #include "errors.h"
+#include "pictures/colour_map.h"
+#include "pictures/spectrum_raster.h"
 #include "png.h"
 #include "temporary_folder.h"
 

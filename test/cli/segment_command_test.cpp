@@ -1,4 +1,4 @@
-#include "segment/segment_command.h"
+#include "commands/segment/segment_command.h"
 
 #include <array>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "simulate/simulate_command.h"
+#include "commands/simulate/simulate_command.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "survey/survey_command.h"
+#include "commands/survey/survey_command.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

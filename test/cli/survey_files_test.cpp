@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "commands/survey/survey_pair.h"
 #include "errors.h"
 #include "io/pose_table.h"
-#include "survey/survey_pair.h"
 #include "temporary_folder.h"
 
 namespace pcl_fft_ground::cli {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "command_fixture.h"
+#include "commands/simulate/simulate_command.h"
 #include "io/cloud_file.h"
 #include "io/pose_table.h"
-#include "simulate/simulate_command.h"
 
 namespace pcl_fft_ground::cli {
 

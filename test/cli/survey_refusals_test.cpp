@@ -1,8 +1,8 @@
 // What the commands `survey` and `align` refuse, and what they explain.
 
-#include "align/align_command.h"
+#include "commands/align/align_command.h"
+#include "commands/survey/survey_command.h"
 #include "errors.h"
-#include "survey/survey_command.h"
 #include "survey_fixture.h"
 
 namespace pcl_fft_ground::cli {

@@ -1,4 +1,4 @@
-#include "survey/survey_table.h"
+#include "commands/survey/survey_table.h"
 
 #include <gtest/gtest.h>
 

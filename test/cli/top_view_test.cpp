@@ -1,4 +1,4 @@
-#include "drawing/top_view.h"
+#include "pictures/top_view.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <pcl/exceptions.h>
 #include <pcl/point_types.h>
 
-#include "pcl_fft_ground/core/voxel_clusters.h"
+#include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "pcl_fft_ground/kd_tree_neighbours.h"
 #include "stone_site.h"
 

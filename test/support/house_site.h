@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "pcl_fft_ground/core/labels.h"
-#include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/core/ground/labels.h"
+#include "pcl_fft_ground/core/scan/points.h"
 
 namespace pcl_fft_ground::test {
 

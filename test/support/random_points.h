@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/core/scan/points.h"
 
 namespace pcl_fft_ground::test {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pcl_fft_ground/core/column_ground.h"
+#include "pcl_fft_ground/core/ground/column_ground.h"
 #include "pcl_fft_ground/grid_ground_segmentation.h"
 #include "pcl_fft_ground/impl/ground_segmentation.hpp"
 

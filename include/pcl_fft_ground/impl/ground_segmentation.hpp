@@ -14,7 +14,7 @@
 #include <pcl/filters/impl/filter_indices.hpp>
 #include <pcl/impl/pcl_base.hpp>
 
-#include "pcl_fft_ground/core/far_points.h"
+#include "pcl_fft_ground/core/scan/far_points.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/core/scan/points.h"
 
 namespace pcl_fft_ground::impl {
 

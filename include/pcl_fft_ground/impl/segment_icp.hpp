@@ -9,7 +9,7 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include "pcl_fft_ground/core/voxel_clusters.h"
+#include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/impl/lazy_kd_tree.hpp"

@@ -8,7 +8,7 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include "pcl_fft_ground/core/voxel_clusters.h"
+#include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
 

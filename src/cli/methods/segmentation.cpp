@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "errors.h"
-#include "pcl_fft_ground/core/far_points.h"
+#include "pcl_fft_ground/core/scan/far_points.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
 

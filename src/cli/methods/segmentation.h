@@ -9,10 +9,10 @@
 
 #include "io/cloud_file.h"
 #include "methods/segmenter.h"
-#include "pcl_fft_ground/core/elevation_grid.h"
-#include "pcl_fft_ground/core/evaluation.h"
-#include "pcl_fft_ground/core/ground_surface.h"
-#include "pcl_fft_ground/core/points.h"
+#include "pcl_fft_ground/core/grid/elevation_grid.h"
+#include "pcl_fft_ground/core/ground/ground_surface.h"
+#include "pcl_fft_ground/core/scan/points.h"
+#include "pcl_fft_ground/simulation/evaluation.h"
 
 namespace pcl_fft_ground::cli {
 

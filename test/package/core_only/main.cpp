@@ -1,5 +1,5 @@
 // Two points a metre apart and one beside the first: two clusters.
-#include <pcl_fft_ground/core/voxel_clusters.h>
+#include <pcl_fft_ground/core/segments/voxel_clusters.h>
 #include <pcl_fft_ground/version.h>
 
 #include <iostream>

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pcl_fft_ground/core/export.h"
+#include "pcl_fft_ground/core/grid/elevation_grid.h"
+#include "pcl_fft_ground/core/ground/ground_surface.h"
+#include "pcl_fft_ground/core/ground/labels.h"
+#include "pcl_fft_ground/core/scan/points.h"
+
+namespace pcl_fft_ground::core {
+
+/// Which height stands for a cell until the ground points in it are known.
+enum class CellStatistic {
+  LOWEST,  ///< the lowest point; of four points or more the second lowest, as one may be an outlier
+  MEAN,    ///< the mean
+};
+
+/// Settings of estimateRobustGround(). What is not set is chosen from the data.
+struct RobustParameters {
+  double relative_max_object_size = 0.5;    ///< m_u: largest object as a share of the scan's extent, (0, 1]
+  std::optional<double> max_object_size;    ///< largest object [m], > 0; takes the place of m_u
+  std::optional<double> cell_size;          ///< side of an elevation cell [m], > 0
+  std::optional<double> height_tolerance;   ///< height above ground from which a point is an object [m], >= 0
+  std::optional<double> finest_wavelength;  ///< shortest wavelength of the ground [m], > 0
+  std::optional<double> max_slope;          ///< steepest ground [m/m], > 0: for land with breaks and terraces
+  std::optional<CellStatistic> statistic;   ///< height of a cell
+  unsigned filter_order = 2;                ///< n of eq. (1), >= 1
+  double passband_ripple = 3.0;             ///< A of eq. (1) [dB], > 0
+};
+
+/// A value that was chosen from the data.
+struct RobustChoice {
+  std::string parameter;  ///< name as in RobustParameters
+  double value = 0;       ///< in the parameter's unit
+  std::string reason;     ///< a short sentence
+};
+
+/// The ground of a scan, how sure it is, and what led to it.
+struct RobustGround {
+  ElevationGrid elevation;          ///< height of each cell by the statistic
+  double extent = 0;                ///< smaller horizontal extent of the points [m]
+  double max_object_size = 0;       ///< m_u extent, or the size given [m]
+  GroundSurface surface;            ///< the ground; supported within the finest wavelength of observed ground
+  double scale = 0;                 ///< spread of the ground points around the surface [m]
+  double tolerance = 0;             ///< an object is higher above the surface than this [m]
+  double slope_tolerance = 0;       ///< plus this times the local slope [m]
+  double depth_tolerance = 0;       ///< a point deeper below the surface than this is an object [m]
+  double finest_wavelength = 0;     ///< of the surface [m]
+  std::vector<double> wavelengths;  ///< all scales, coarse to fine [m]
+  std::vector<RobustChoice> choices;  ///< of the values that were not set
+};
+
+/** The ground of a level scan as a band-limited surface fitted to the ground cells only, coarse to fine:
+ *
+ *     minimise  sum_i w_i (y_i - s_i)^2 + sum_k P_k |s^_k|^2,   P_k = eps^2 (d / d_c)^(2n),
+ *
+ * where s^ is the cosine transform of the surface s, w is 0 for an empty cell, near 0 on an object and 1 on
+ * the ground. With w = 1 everywhere this is the Butterworth power response of eq. (1). The weights follow
+ * from the residuals of the current surface; it starts from the lower envelope at the largest object's size
+ * or, with a maximum slope, from the cells that a growing morphological opening leaves. Ground above a break
+ * of the land (a quay wall, a terrace) is too large for an object and taken in; the surface bends there.
+ *
+ * \param level_points points in the level frame
+ * \param frame_from_input the transform that brought them there, kept in the surface
+ * \return a default value, with a grid of no cells, for no points
+ * \throws std::length_error if the grid would have more than MAX_CELLS cells
+ * \note The result does not depend on the order of the points.
+ */
+PCL_FFT_GROUND_CORE_EXPORT RobustGround estimateRobustGround(const PointsView& level_points,
+                                                             const Eigen::Isometry3d& frame_from_input,
+                                                             const RobustParameters& parameters);
+
+/// Labels of points, those below the ground counted apart.
+struct RobustLabels {
+  Labels labels;
+  std::size_t below = 0;  ///< objects that are deeper than the depth tolerance below the ground: noise
+};
+
+/** Separates ground from objects by the tolerances of the ground.
+ * \param level_points points in the level frame; all ground if the ground has no cells
+ */
+PCL_FFT_GROUND_CORE_EXPORT RobustLabels labelRobust(const PointsView& level_points,
+                                                    const RobustGround& ground);
+
+}  // namespace pcl_fft_ground::core

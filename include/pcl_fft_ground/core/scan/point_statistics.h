@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "pcl_fft_ground/core/export.h"
+#include "pcl_fft_ground/core/scan/points.h"
+
+namespace pcl_fft_ground::core {
+
+/// Smallest and largest coordinate of each axis [m].
+struct Bounds {
+  Eigen::Array3d low = Eigen::Array3d::Zero();
+  Eigen::Array3d high = Eigen::Array3d::Zero();
+};
+
+/// Axis-aligned bounds of points; all zero for none. O(n).
+PCL_FFT_GROUND_CORE_EXPORT Bounds boundsOf(const PointsView& points);
+
+/// Where the points of a scan lie, in the frame of the points.
+struct PointStatistics {
+  Bounds bounds;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();        ///< centroid [m]
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< covariance [m^2]
+};
+
+/** Bounds, centroid and covariance of points; all zero for none.
+ *
+ * Coordinates are rounded to a millionth of the longest side of the bounds (more coarsely beyond four million
+ * points), so that all sums are sums of integers: the result does not depend on the order of the points.
+ * O(n).
+ */
+PCL_FFT_GROUND_CORE_EXPORT PointStatistics summarise(const PointsView& points);
+
+}  // namespace pcl_fft_ground::core

@@ -1,0 +1,166 @@
+#include "commands/align/align_command.h"
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <optional>
+#include <string_view>
+
+#include "command_line.h"
+#include "commands/align/align_outputs.h"
+#include "commands/align/scan_description.h"
+#include "commands/segment/segment_report.h"
+#include "errors.h"
+#include "io/output_file.h"
+#include "io/scanner.h"
+#include "pictures/axes.h"
+#include "progress.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+namespace po = boost::program_options;
+using nlohmann::ordered_json;
+
+constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground align REFERENCE MOVING -o DIR [options]
+
+Aligns two overlapping scans by the objects in them (S-ICP): both are segmented, segments that are the same thing are
+matched, and ICP with correspondences in matched segments only moves MOVING on to REFERENCE. The files are PCD, PLY or
+text, in metres, z roughly up. Where the scans lie to each other is first taken from their VIEWPOINT (the pose of the
+scan by navigation) or from --guess; the default search mends 0.6 m and 8 degrees, --search wide 2.5 m and 25 degrees.
+What cannot be aligned with confidence is refused, and the reason printed: a refusal is a result, too (exit status 0).
+)";
+
+constexpr const char* HELP_AFTER = R"(
+DIR is made if need be and receives
+  transform.txt   4 x 4 matrix that maps the coordinates of MOVING to those of REFERENCE; only if aligned
+  aligned.pcd     MOVING in the coordinates of REFERENCE, with all its fields; only if aligned. Where they are large,
+                  a whole-metre origin is subtracted, which alignment.json gives; the VIEWPOINT says the same
+  alignment.json  the same matrix, its covariance (x y z rotation vector, about that origin), matches, score, crispness
+                  (Nx), parameters
+  alignment.png   both scans from above before and after: REFERENCE blue, its segments turquoise, MOVING red, its
+                  segments yellow, matched segments black
+
+Example:
+  pcl_fft_ground simulate survey wreck -o wreck --points 200000
+  pcl_fft_ground align wreck/submap_00.pcd wreck/submap_01.pcd -o pair --max-object-size 1
+
+Exit status: 0 done (aligned or refused), 1 the work failed, 2 wrong usage.
+)";
+
+po::options_description commandOptions() {
+  po::options_description options("General", HELP_WIDTH, HELP_TEXT_WIDTH);
+  auto add = options.add_options();
+  add("output,o", po::value<std::string>()->value_name("DIR"),
+      "directory for the results; other files in it stay");
+  add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
+      "how ground is told from objects: naive, planar, grid, graph-cut, fft-lowpass or fft");
+  add("guess", po::value<std::string>()->value_name("X,Y,Z,YAW"),
+      "place [m] and heading [degrees] of MOVING in the coordinates of REFERENCE, in place of the "
+      "VIEWPOINTs");
+  add("json", po::bool_switch(), "print the report as JSON");
+  add("quiet", po::bool_switch(), "print nothing but errors");
+  add("help,h", po::bool_switch(), "show this text");
+  return options;
+}
+
+/// "1,2,0,30" as a pose.
+Eigen::Isometry3d parseGuess(const std::string& text) {
+  std::string words = text;
+  for (char& c : words) c = c == ',' ? ' ' : c;
+  std::string_view rest = words;
+  std::array<double, 4> numbers{};
+  bool valid = true;
+  for (double& number : numbers) {
+    const std::optional<double> parsed = parseNumber<double>(takeWord(rest));
+    valid = valid && parsed && std::abs(*parsed) <= Viewpoint::FARTHEST;
+    number = parsed.value_or(0);
+  }
+  if (!valid || !takeWord(rest).empty())
+    throw UsageError("--guess " + text + ": allowed are four numbers, X,Y,Z,YAW, up to 1e8");
+  return Eigen::Translation3d(numbers[0], numbers[1], numbers[2]) *
+         Eigen::AngleAxisd(numbers[3] * EIGEN_PI / 180, Eigen::Vector3d::UnitZ());
+}
+
+/// reference_from_moving of the clouds' points, as far as it is known.
+Eigen::Isometry3d initialGuess(const po::variables_map& values, const Cloud& reference, const Cloud& moving) {
+  if (values.count("guess") == 0)
+    return reference.viewpoint.asTransform().inverse() * moving.viewpoint.asTransform();
+  return Eigen::Translation3d(-reference.origin) * parseGuess(values["guess"].as<std::string>()) *
+         Eigen::Translation3d(moving.origin);
+}
+
+AlignedScan describeScanFile(const std::string& path, Segmenter& segmenter, const AlignmentSettings& settings,
+                             Progress& progress) {
+  progress.begin("read", "reading " + path);
+  AlignedScan scan{path, readCloud(path), {}};
+  progress.begin("segment", "segmenting " + path);
+  scan.segments = describeCloud(path, scan.cloud, segmenter, settings.segments);
+  return scan;
+}
+
+void printSummary(const AlignedPair& pair, const ordered_json& report) {
+  if (!pair.alignment.accepted) {
+    std::cout << "not aligned: " << pair.alignment.refusal << "\n";
+    return;
+  }
+  const Eigen::Isometry3d& found = pair.alignment.reference_from_moving;
+  const Eigen::Vector3d middle = pair.moving.segments.surface.cast<double>().rowwise().mean();
+  const double turn =
+      Eigen::AngleAxisd(pair.guess.linear().transpose() * found.linear()).angle() * 180 / EIGEN_PI;
+  std::cout << "aligned by " << report["method"].get<std::string>() << ": " << pair.alignment.matches.size()
+            << " matches, score " << fixedNumber(pair.alignment.score, 2) << ", moved by "
+            << fixedNumber((found * middle - pair.guess * middle).norm(), 3) << " m and "
+            << fixedNumber(turn, 2) << " degrees, Nx "
+            << fixedNumber(report["crispness"]["delta_nx_percent"].get<double>(), 2) << " %\n";
+}
+
+void align(const po::variables_map& values) {
+  const std::vector<std::string> clouds = values.count("cloud") == 0
+                                              ? std::vector<std::string>()
+                                              : values["cloud"].as<std::vector<std::string>>();
+  if (clouds.size() != 2) throw UsageError("align: allowed are two scans, REFERENCE and MOVING");
+  if (values.count("output") == 0 || values["output"].as<std::string>().empty())
+    throw UsageError("align: no output given: name a folder by -o DIR");
+  const AlignmentSettings settings = alignmentSettings(values);
+  Segmenter segmenter = makeAlignmentSegmenter(values["method"].as<std::string>(), values, settings.version);
+  const std::string directory = values["output"].as<std::string>();
+
+  const bool quiet = values["quiet"].as<bool>();
+  Progress progress(quiet);
+  AlignedPair pair{describeScanFile(clouds[0], segmenter, settings, progress),
+                   describeScanFile(clouds[1], segmenter, settings, progress),
+                   Eigen::Isometry3d::Identity(),
+                   {}};
+  pair.guess = initialGuess(values, pair.reference.cloud, pair.moving.cloud);
+  progress.begin("align", "aligning");
+  pair.alignment =
+      core::alignScans(pair.moving.segments, pair.reference.segments, pair.guess, settings.alignment);
+  progress.begin("write", "writing " + directory);
+  makeDirectory(directory);
+  const ordered_json report = makeAlignmentReport(pair, settings, segmenter);
+  writeAlignment(directory, pair, report);
+  progress.end();
+  if (values["json"].as<bool>())
+    std::cout << asText(report);
+  else if (!quiet)
+    printSummary(pair, report);
+}
+
+}  // namespace
+
+void runAlign(const std::vector<std::string>& arguments) {
+  po::options_description shown;
+  shown.add(commandOptions()).add(alignmentOptions("dense")).add(segmenterOptions());
+  po::options_description all;
+  all.add(shown).add_options()("cloud", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("cloud", -1);
+  const po::variables_map values = parseArguments("align", arguments, all, positional);
+  if (values["help"].as<bool>())
+    std::cout << HELP_BEFORE << shown << HELP_AFTER;
+  else
+    align(values);
+}
+
+}  // namespace pcl_fft_ground::cli

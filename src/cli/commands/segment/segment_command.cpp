@@ -1,0 +1,185 @@
+#include "commands/segment/segment_command.h"
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <sstream>
+
+#include "command_line.h"
+#include "commands/segment/segment_outputs.h"
+#include "commands/segment/segment_report.h"
+#include "errors.h"
+#include "io/output_file.h"
+#include "progress.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+namespace po = boost::program_options;
+using nlohmann::ordered_json;
+
+constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground segment CLOUD -o DIR [options]
+
+Splits a scan into ground and objects, and the objects into segments. CLOUD is a PCD or PLY file or text with
+x y z [label] in each line; coordinates are in metres, and the ground is what lies low. All that most scans
+need is the size of the largest object, --max-object-size; the values in round brackets hold otherwise.
+)";
+
+constexpr const char* HELP_AFTER = R"(
+DIR is made if need be and receives
+  labelled.pcd                           all points, in order, with label (0 ground, 1 object, 2 neither) and
+                                         segment (1.. by falling size, 0 none)
+  ground.pcd objects.pcd                 the ground points and the object points
+  ground_surface.pcd ground_surface.asc  the estimated ground, as points and as an ESRI ASCII grid; with fft the
+                                         points tell where it is supported by ground seen nearby, and how
+                                         uncertain it is [m]
+  segments.csv                           place, extent and height of each segment
+  report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores; the origin that
+                                         is subtracted in all of these where coordinates are large
+  elevation.png ground.png spectrum.png labels.png segments.png
+Where CLOUD has a label field, TPR, TNR and F1 of the objects are printed.
+
+Examples:
+  pcl_fft_ground segment wreck.pcd -o result --max-object-size 1
+  pcl_fft_ground segment street.ply -o result --max-object-size 10
+  pcl_fft_ground segment quarry.pcd -o result --max-object-size 40 --max-slope 0.3
+
+Exit status: 0 done, 1 the work failed, 2 wrong usage.
+)";
+
+po::options_description commandOptions() {
+  po::options_description options("General", HELP_WIDTH, HELP_TEXT_WIDTH);
+  auto add = options.add_options();
+  add("output,o", po::value<std::string>()->value_name("DIR"),
+      "directory for the results; other files in it stay");
+  add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
+      "how ground is told from objects: naive, planar, grid, graph-cut, fft-lowpass (the published method) "
+      "or fft (the robust one)");
+  add("leaf-size", po::value<double>()->value_name("M"),
+      "side of the voxels that cluster the objects [m], above 0; no less than the spacing of the points (the "
+      "cell size)");
+  add("min-cluster-size", po::value<long long>()->value_name("N"),
+      "points of the smallest segment, at least 1 (10)");
+  add("max-cluster-size", po::value<long long>()->value_name("N"),
+      "points of the largest segment (no limit)");
+  add("height", po::bool_switch(),
+      "add the height above the ground [m] to labelled.pcd as a field 'height', NaN where a point is not "
+      "finite");
+  add("json", po::bool_switch(), "print the report as JSON");
+  add("quiet", po::bool_switch(), "print nothing but errors");
+  add("help,h", po::bool_switch(), "show this text");
+  return options;
+}
+
+std::size_t clusterSize(const po::variables_map& values, const std::string& option, std::size_t fallback) {
+  if (values.count(option) == 0) return fallback;
+  constexpr long long MOST = std::numeric_limits<pcl::index_t>::max();
+  const auto size = values[option].as<long long>();
+  if (size < 1 || size > MOST)
+    throw UsageError("--" + option + " " + std::to_string(size) + ": allowed is a whole number from 1 to " +
+                     std::to_string(MOST));
+  return static_cast<std::size_t>(size);
+}
+
+ClusterParameters clusterParameters(const po::variables_map& values) {
+  ClusterParameters parameters;
+  if (values.count("leaf-size") != 0) parameters.leaf_size = values["leaf-size"].as<double>();
+  if (!std::isfinite(parameters.leaf_size) || parameters.leaf_size <= 0) {
+    std::ostringstream message;
+    message << "--leaf-size " << parameters.leaf_size << ": allowed is a finite number of metres above 0";
+    throw UsageError(message.str());
+  }
+  parameters.min_cluster_size = clusterSize(values, "min-cluster-size", parameters.min_cluster_size);
+  parameters.max_cluster_size = clusterSize(values, "max-cluster-size", parameters.max_cluster_size);
+  if (parameters.max_cluster_size < parameters.min_cluster_size)
+    throw UsageError("--max-cluster-size " + std::to_string(parameters.max_cluster_size) +
+                     ": allowed is at least --min-cluster-size, " +
+                     std::to_string(parameters.min_cluster_size));
+  return parameters;
+}
+
+ordered_json describeClusterParameters(ordered_json parameters, const ClusterParameters& clusters,
+                                       const po::variables_map& values) {
+  const auto source = [&](const std::string& option, const char* otherwise) {
+    return values.count(option) != 0 ? "option" : otherwise;
+  };
+  parameters["leaf-size"] = {{"value", clusters.leaf_size}, {"from", source("leaf-size", "cell-size")}};
+  parameters["min-cluster-size"] = {{"value", clusters.min_cluster_size},
+                                    {"from", source("min-cluster-size", "default")}};
+  if (values.count("max-cluster-size") != 0)
+    parameters["max-cluster-size"] = {{"value", clusters.max_cluster_size}, {"from", "option"}};
+  return parameters;
+}
+
+std::string required(const po::variables_map& values, const std::string& option, const std::string& what) {
+  if (values.count(option) == 0 || values[option].as<std::string>().empty())
+    throw UsageError("segment: no " + what);
+  return values[option].as<std::string>();
+}
+
+/// The warnings of the filter, and one where the clustering found nothing.
+std::vector<std::string> warningsOf(const Segmenter& segmenter, const Segmentation& segmentation,
+                                    const ClusterParameters& clusters) {
+  std::vector<std::string> warnings = segmenter.filter->getWarnings();
+  if (segmentation.clusters.empty() && segmentation.objects.indices.size() >= clusters.min_cluster_size)
+    warnings.push_back("no segment has " + std::to_string(clusters.min_cluster_size) +
+                       " points: a larger --leaf-size or a smaller --min-cluster-size may help");
+  return warnings;
+}
+
+void segment(const po::variables_map& values) {
+  const std::string input = required(values, "cloud", "cloud given: name a PCD, PLY or text file");
+  const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
+  Segmenter segmenter = makeSegmenter(values["method"].as<std::string>(), values);
+  ClusterParameters clusters = clusterParameters(values);
+  const bool quiet = values["quiet"].as<bool>();
+
+  Progress progress(quiet);
+  progress.begin("read", "Reading " + input);
+  const Cloud cloud = readCloud(input);
+  progress.begin("segment", "Separating ground from objects");
+  Segmentation segmentation = segmentCloud(input, cloud, segmenter);
+  if (values["height"].as<bool>()) segmentation.heights = segmenter.filter->getHeightAboveGround();
+  progress.begin("cluster", "Clustering the objects");
+  if (values.count("leaf-size") == 0) clusters.leaf_size = segmenter.cellSize();
+  clusterObjects(cloud, clusters, segmentation);
+  progress.begin("write", "Writing to " + directory);
+  makeDirectory(directory);
+  writeClouds(directory, cloud, segmentation);
+  writeGroundSurface(directory, cloud, segmentation);
+  writeSegments(directory, cloud, segmentation);
+  progress.begin("pictures", "Drawing pictures to " + directory);
+  writePictures(directory, segmenter, segmentation, cloud);
+  progress.end();
+
+  const ordered_json parameters = describeClusterParameters(segmenter.parametersInForce(), clusters, values);
+  const std::vector<std::string> warnings = warningsOf(segmenter, segmentation, clusters);
+  const ordered_json report =
+      makeReport(input, cloud, segmenter, segmentation, parameters, warnings, progress);
+  const std::string text = asText(report);
+  writeText(directory + "/report.json", text);
+  for (const std::string& warning : warnings)
+    if (!quiet) std::cerr << "pcl_fft_ground: warning: " << input << ": " << warning << '\n';
+  if (values["json"].as<bool>())
+    std::cout << text;
+  else if (!quiet)
+    printSummary(std::cout, report);
+}
+
+}  // namespace
+
+void runSegment(const std::vector<std::string>& arguments) {
+  po::options_description shown;
+  shown.add(segmenterOptions()).add(commandOptions());
+  po::options_description all;
+  all.add(shown).add_options()("cloud", po::value<std::string>());
+  po::positional_options_description positional;
+  positional.add("cloud", 1);
+  const po::variables_map values = parseArguments("segment", arguments, all, positional);
+  if (values["help"].as<bool>())
+    std::cout << HELP_BEFORE << shown << HELP_AFTER;
+  else
+    segment(values);
+}
+
+}  // namespace pcl_fft_ground::cli

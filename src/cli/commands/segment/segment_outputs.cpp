@@ -1,0 +1,143 @@
+#include "commands/segment/segment_outputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+#include <pcl/conversions.h>
+
+#include "io/ascii_grid.h"
+#include "io/output_file.h"
+
+namespace pcl_fft_ground::cli {
+namespace {
+
+constexpr double NO_DATA = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::int32_t> labelNumbers(const core::Labels& labels) {
+  std::vector<std::int32_t> numbers;
+  numbers.reserve(labels.size());
+  for (const core::Label label : labels) numbers.push_back(static_cast<std::int32_t>(label));
+  return numbers;
+}
+
+/// The centre of every cell on the ground, in the frame of the input; organised as the grid.
+pcl::PointCloud<Point> surfacePoints(const core::GroundSurface& surface) {
+  const core::GridGeometry& cells = surface.geometry;
+  const Eigen::Isometry3d input_from_frame = surface.frame_from_input.inverse();
+  pcl::PointCloud<Point> points(static_cast<std::uint32_t>(cells.rows),
+                                static_cast<std::uint32_t>(cells.cols));
+  for (Eigen::Index j = 0; j < cells.cols; ++j)
+    for (Eigen::Index i = 0; i < cells.rows; ++i) {
+      const Eigen::Vector3d centre(cells.origin.x() + (static_cast<double>(i) + 0.5) * cells.cell_size,
+                                   cells.origin.y() + (static_cast<double>(j) + 0.5) * cells.cell_size,
+                                   surface.height(i, j));
+      points[static_cast<std::size_t>(i + j * cells.rows)].getVector3fMap() =
+          (input_from_frame * centre).cast<float>();
+    }
+  return points;
+}
+
+bool covers(const core::GridGeometry& cells, const Eigen::Vector3d& p) {
+  const Eigen::Array2d place = (p.head<2>() - cells.origin).array() / cells.cell_size;
+  return (place >= 0).all() && place.x() <= static_cast<double>(cells.rows) &&
+         place.y() <= static_cast<double>(cells.cols);
+}
+
+/// Height at which the vertical of the input through (x, y) meets the surface; NaN beside the surface.
+double verticalHeight(const core::GroundSurface& surface, double x, double y) {
+  const double upward = surface.frame_from_input.linear()(2, 2);
+  if (std::abs(upward) < 0.1) return NO_DATA;  // the surface stands on end: a vertical does not meet it once
+  constexpr int MOST_STEPS = 20;
+  constexpr double CLOSE = 1e-6;  // [m], a hundredth of what the grid's four digits show
+  double z = 0, change = 1;
+  for (int step = 0; step < MOST_STEPS && std::abs(change) > CLOSE; ++step) {
+    change = surface.heightAbove({x, y, z}) / upward;
+    z -= change;
+  }
+  return covers(surface.geometry, surface.frame_from_input * Eigen::Vector3d(x, y, z)) ? z : NO_DATA;
+}
+
+/// The surface's own cell size, or a larger one: a long scan that lies across the axes, in a grid along them,
+/// would need many times the cells that it has.
+double levelCellSize(const core::Bounds& bounds, const core::GridGeometry& cells) {
+  constexpr double MOST_CELLS_PER_CELL = 16;
+  const double most =
+      std::min(0.99 * core::MAX_CELLS, MOST_CELLS_PER_CELL * static_cast<double>(cells.rows * cells.cols));
+  const double needed = ((bounds.high - bounds.low).head<2>() / cells.cell_size + 1).prod();
+  return needed <= most ? cells.cell_size : cells.cell_size * std::sqrt(needed / most);
+}
+
+}  // namespace
+
+void writeClouds(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+  pcl::PCLPointCloud2 labelled = cloud.fields;
+  renameField(labelled, "label", "truth");
+  renameField(labelled, "segment", "truth_segment");
+  setInt32Field(labelled, "label", labelNumbers(segmentation.labels));
+  setInt32Field(labelled, "segment", segmentation.segments);
+  if (!segmentation.heights.empty()) {
+    renameField(labelled, "height", "input_height");
+    setFloatField(labelled, "height", {segmentation.heights.begin(), segmentation.heights.end()});
+  }
+  const auto write = [&](const std::string& name, const pcl::PCLPointCloud2& points) {
+    writePcd(directory + "/" + name, points, cloud.viewpoint);
+  };
+  write("labelled.pcd", labelled);
+  write("ground.pcd", selectPoints(labelled, segmentation.ground.indices));
+  write("objects.pcd", selectPoints(labelled, segmentation.objects.indices));
+}
+
+void writeGroundSurface(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+  const core::GroundSurface& surface = segmentation.surface;
+  const pcl::PointCloud<Point> points = surfacePoints(surface);
+  pcl::PCLPointCloud2 fields;
+  pcl::toPCLPointCloud2(points, fields);
+  if (surface.supported.size() > 0) {
+    setInt32Field(fields, "supported",
+                  {surface.supported.data(), surface.supported.data() + surface.supported.size()});
+    const Eigen::ArrayXXf uncertainty = surface.uncertainty.cast<float>();
+    setFloatField(fields, "uncertainty", {uncertainty.data(), uncertainty.data() + uncertainty.size()});
+  }
+  writePcd(directory + "/ground_surface.pcd", fields, cloud.viewpoint);
+
+  core::Points corners(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t n = 0; n < points.size(); ++n)
+    corners.col(static_cast<Eigen::Index>(n)) = points[n].getVector3fMap();
+  const core::Bounds bounds = core::boundsOf(corners);
+  const core::GridGeometry level = core::gridAround(bounds, levelCellSize(bounds, surface.geometry));
+  // A cell is centred on the outermost points: they lie at cell centres of the surface.
+  const Eigen::Vector2d lower_left = level.origin - Eigen::Vector2d::Constant(0.5 * level.cell_size);
+  Eigen::ArrayXXd heights(level.rows, level.cols);
+  for (Eigen::Index j = 0; j < level.cols; ++j)
+    for (Eigen::Index i = 0; i < level.rows; ++i)
+      heights(i, j) = verticalHeight(surface, level.origin.x() + static_cast<double>(i) * level.cell_size,
+                                     level.origin.y() + static_cast<double>(j) * level.cell_size);
+  writeAsciiGrid(directory + "/ground_surface.asc", heights, lower_left, level.cell_size);
+}
+
+void writeSegments(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+  std::ostringstream csv;
+  csv << "segment,points,cx,cy,cz,ex,ey,ez,height\n" << std::fixed << std::setprecision(4);
+  for (std::size_t k = 0; k < segmentation.clusters.size(); ++k) {
+    Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    double height = -std::numeric_limits<double>::infinity();
+    const pcl::Indices& indices = segmentation.clusters[k].indices;
+    for (const pcl::index_t n : indices) {
+      const Eigen::Array3d p = (*cloud.points)[static_cast<std::size_t>(n)].getArray3fMap().cast<double>();
+      low = low.min(p);
+      high = high.max(p);
+      sum += p;
+      height = std::max(height, segmentation.surface.heightAbove(p));
+    }
+    const Eigen::Array3d centroid = sum / static_cast<double>(indices.size()), extent = high - low;
+    csv << k + 1 << ',' << indices.size() << ',' << centroid.x() << ',' << centroid.y() << ',' << centroid.z()
+        << ',' << extent.x() << ',' << extent.y() << ',' << extent.z() << ',' << height << '\n';
+  }
+  writeText(directory + "/segments.csv", csv.str());
+}
+
+}  // namespace pcl_fft_ground::cli

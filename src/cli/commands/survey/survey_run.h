@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands/survey/survey_pair.h"
+#include "commands/survey/survey_poses.h"
+#include "commands/survey/survey_request.h"
+#include "progress.h"
+
+namespace pcl_fft_ground::cli {
+
+/// The sub-maps placed in one way.
+struct Placement {
+  const char* name = "";
+  std::size_t voxels = 0;            ///< of 2 cm that all sub-maps together occupy: the fewer, the crisper
+  std::optional<PoseErrors> errors;  ///< where the truth is known
+};
+
+/// What came of a survey.
+struct SurveyOutcome {
+  std::string name;
+  std::size_t submaps = 0;
+  std::vector<PairResult> pairs;
+  nlohmann::ordered_json origins;  ///< by sub-map, what is subtracted from its coordinates, where that is
+  std::size_t edges = 0;           ///< aligned pairs that the global alignment rests on
+  std::size_t rejected_edges = 0;  ///< of these, such that it found false
+  std::array<Placement, 3> placements;  ///< by navigation, chained and by the global alignment
+};
+
+/** Aligns the sub-maps of a survey pair by pair, then all of them, and writes the results but the report.
+ *
+ * What an earlier run with the same parameters has done is not done again.
+ *
+ * \throws WorkError naming the file or folder that cannot be read or written
+ */
+SurveyOutcome processSurvey(const SurveyTask& task, SurveyRequest& request, Progress& progress);
+
+}  // namespace pcl_fft_ground::cli

@@ -1,0 +1,90 @@
+#include "align/alignment_gates.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "align/alignment_score.h"
+
+namespace pcl_fft_ground::core {
+namespace {
+
+constexpr double DEGREE = 3.14159265358979323846 / 180;
+constexpr double SLACK = 1.15;            // the last refinement may leave the gates by so much
+constexpr double CORRELATED_POINTS = 10;  // errors of so many neighbouring points are the same
+
+std::string sentence(const std::string& what, double value, double allowed, const std::string& unit) {
+  std::ostringstream text;
+  text << std::setprecision(3) << what << " is " << value << unit << ", allowed are " << allowed << unit;
+  return text.str();
+}
+
+double largestDeviation(const Eigen::Matrix2d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
+}
+
+}  // namespace
+
+std::optional<Matrix6d> covarianceAboutCentre(const IcpResult& icp) {
+  constexpr double UNHELD = 1e-9;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(icp.information);
+  const Vector6d values = solver.eigenvalues();
+  if (!(values[0] > UNHELD * values[5])) return std::nullopt;
+  const double least = icp.least_deviation * icp.least_deviation;
+  const double variance = CORRELATED_POINTS * std::max(icp.variance, least);
+  const Matrix6d of_noise = variance * solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
+                            solver.eigenvectors().transpose();
+  return Matrix6d(of_noise + icp.spread);
+}
+
+std::string reasonAgainstMotion(const ScanPair& pair, const IcpResult& icp) {
+  const SearchGates& gates = pair.parameters().gates;
+  const Eigen::Vector3d moved = icp.centre - icp.correction.inverse() * icp.centre;
+  const double turn = std::abs(yawOf(icp.correction)) / DEGREE;
+  const double tilt = tiltOf(icp.correction) / DEGREE;
+  if (moved.head<2>().norm() > SLACK * gates.max_shift)
+    return sentence("the shift", moved.head<2>().norm(), SLACK * gates.max_shift, " m");
+  if (std::abs(moved.z()) > SLACK * gates.max_rise)
+    return sentence("the rise", std::abs(moved.z()), SLACK * gates.max_rise, " m");
+  if (turn > SLACK * gates.max_turn) return sentence("the turn", turn, SLACK * gates.max_turn, " degrees");
+  if (tilt > gates.max_tilt) return sentence("the tilt", tilt, gates.max_tilt, " degrees");
+  return {};
+}
+
+std::string reasonAgainst(const ScanPair& pair, const IcpResult& icp) {
+  std::string reason = reasonAgainstMotion(pair, icp);
+  if (!reason.empty()) return reason;
+  const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp);
+  if (!covariance) return "the matched points leave a direction free";
+  const double max_sigma = pair.parameters().max_sigma;
+  const double sigma = largestDeviation(covariance->topLeftCorner<2, 2>());
+  if (sigma > max_sigma) return sentence("the predicted horizontal deviation", sigma, max_sigma, " m");
+  // Each scan sees its own side of things; the error that all partners share may be as large as what is left.
+  const double residual = std::sqrt(icp.variance);
+  if (residual > max_sigma)
+    return sentence("the distance left between the surfaces", residual, max_sigma, " m");
+  return {};
+}
+
+Alignment refused(const ScanPair& pair, const std::string& reason) {
+  Alignment result;
+  result.reference_from_moving = pair.initialGuess();
+  result.overlap = overlapOf(pair, Eigen::Isometry3d::Identity());
+  result.refusal = reason;
+  return result;
+}
+
+Alignment alignmentOf(const ScanPair& pair, const IcpResult& icp, AlignmentMethod method) {
+  Alignment result;
+  result.method = method;
+  result.reference_from_moving = icp.correction * pair.initialGuess();
+  result.overlap = overlapOf(pair, icp.correction);
+  const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp);
+  if (covariance) result.covariance = covarianceAboutOrigin(*covariance, icp.centre);
+  return result;
+}
+
+}  // namespace pcl_fft_ground::core

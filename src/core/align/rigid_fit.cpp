@@ -1,0 +1,80 @@
+#include "pcl_fft_ground/core/align/rigid_fit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_fft_ground::core {
+namespace {
+
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return matrix;
+}
+
+}  // namespace
+
+Eigen::Isometry3d YawFit::solve() const {
+  Eigen::Isometry3d to_from = Eigen::Isometry3d::Identity();
+  if (weight_ <= 0) return to_from;
+  const Eigen::Vector3d from = from_ / weight_;
+  const Eigen::Vector3d to = to_ / weight_;
+  const double dot = dot_ - weight_ * from.head<2>().dot(to.head<2>());
+  const double cross = cross_ - weight_ * (from.x() * to.y() - from.y() * to.x());
+  to_from.linear() = Eigen::AngleAxisd(std::atan2(cross, dot), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  to_from.translation() = to - to_from.linear() * from;
+  return to_from;
+}
+
+Eigen::Isometry3d motionAbout(const Eigen::Vector3d& centre, const Vector6d& v) {
+  const Eigen::Vector3d rotation = v.tail<3>();
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.stableNormalized()).toRotationMatrix();
+  motion.translation() = centre + v.head<3>() - motion.linear() * centre;
+  return motion;
+}
+
+void MotionFit::addToPlane(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                           const Eigen::Vector3d& normal, double weight) {
+  Vector6d gradient;
+  gradient << normal, (from - centre_).cross(normal);
+  information_.noalias() += weight * gradient * gradient.transpose();
+  gradient_ += weight * normal.dot(to - from) * gradient;
+}
+
+void MotionFit::addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
+  Eigen::Matrix<double, 3, 6> jacobian;
+  jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(from - centre_);
+  information_.noalias() += weight * jacobian.transpose() * jacobian;
+  gradient_ += weight * jacobian.transpose() * (to - from);
+}
+
+Vector6d MotionFit::motion() const {
+  constexpr double UNHELD = 1e-9;  // relative to the direction that is held best
+  // Of dynamic size, as GCC sees uninitialised values in the fixed one where there are none.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information_);
+  const Vector6d values = solver.eigenvalues();
+  const Vector6d along = solver.eigenvectors().transpose() * gradient_;
+  Vector6d step = Vector6d::Zero();
+  for (Eigen::Index k = 0; k < 6; ++k)
+    if (values[k] > UNHELD * values[5]) step += along[k] / values[k] * solver.eigenvectors().col(k);
+  return step;
+}
+
+Matrix6d covarianceAboutOrigin(const Matrix6d& about_centre, const Eigen::Vector3d& centre) {
+  // A turn about the centre shifts the origin by centre x rotation.
+  Matrix6d origin_from_centre = Matrix6d::Identity();
+  origin_from_centre.topRightCorner<3, 3>() = crossMatrix(centre);
+  return origin_from_centre * about_centre * origin_from_centre.transpose();
+}
+
+double yawOf(const Eigen::Isometry3d& transform) {
+  return std::atan2(transform(1, 0) - transform(0, 1), transform(0, 0) + transform(1, 1));
+}
+
+double tiltOf(const Eigen::Isometry3d& transform) {
+  return std::acos(std::clamp(transform(2, 2), -1.0, 1.0));
+}
+
+}  // namespace pcl_fft_ground::core

@@ -1,0 +1,161 @@
+#include "ground/robust_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace pcl_fft_ground::core {
+namespace {
+
+/// Lower, or at the same height and before in x and y: any order that is not that of the points.
+bool isBelow(const float* a, const float* b) {
+  if (a[2] != b[2]) return a[2] < b[2];
+  return a[0] != b[0] ? a[0] < b[0] : a[1] < b[1];
+}
+
+/// The lowest point of a cell; the second lowest if there are enough to drop one.
+const float* lowestPoint(const float* begin, const float* end) {
+  constexpr std::ptrdiff_t ENOUGH_TO_DROP_ONE = 4;
+  const float* first = begin;
+  const float* second = nullptr;
+  for (const float* p = begin + 3; p < end; p += 3) {
+    if (isBelow(p, first)) {
+      second = first;
+      first = p;
+    } else if (second == nullptr || isBelow(p, second)) {
+      second = p;
+    }
+  }
+  return end - begin >= 3 * ENOUGH_TO_DROP_ONE ? second : first;
+}
+
+CellPoints lowestPoints(const SortedPoints& points) {
+  CellPoints result;
+  result.positions.reserve(points.size());
+  result.cells.reserve(points.size());
+  const float* positions = points.positions().data();
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const float* lowest = lowestPoint(positions + 3 * points.begin(n), positions + 3 * points.end(n));
+    result.positions.push_back(Eigen::Map<const Eigen::Vector3f>(lowest).cast<double>());
+    result.cells.push_back(points.cell(n));
+  }
+  return result;
+}
+
+/// The tangent of a surface amid a cell: within a cell the two are the same.
+struct Tangent {
+  double height = 0, along = 0, across = 0;  // at the origin of the level frame [m], slopes
+
+  Tangent() = default;
+  Tangent(const GroundBand& band, const Eigen::Vector2d& place) {
+    const Footing footing = band.grid.at(place.x(), place.y());
+    const Eigen::Vector2d slope = band.grid.gradient(band.surface, footing);
+    height = band.grid.value(band.surface, footing) - slope.dot(place);
+    along = slope.x();
+    across = slope.y();
+  }
+
+  double heightAbove(const float* p) const {
+    return static_cast<double>(p[2]) - height - along * static_cast<double>(p[0]) -
+           across * static_cast<double>(p[1]);
+  }
+};
+
+/// Mean of points. Sums of integers do not depend on the order of the points.
+class PointMean {
+ public:
+  PointMean(const Eigen::Array3d& low, const Eigen::Array3d& steps_per_metre)
+      : low_(low), steps_per_metre_(steps_per_metre) {}
+
+  void add(const float* p) {
+    x_ += steps(p, 0), y_ += steps(p, 1), z_ += steps(p, 2);
+    ++count_;
+  }
+  bool isEmpty() const { return count_ == 0; }
+  Eigen::Vector3d mean() const {
+    const Eigen::Array3d sum(static_cast<double>(x_), static_cast<double>(y_), static_cast<double>(z_));
+    return low_ + sum / (steps_per_metre_ * static_cast<double>(count_));
+  }
+
+ private:
+  std::int64_t steps(const float* p, int axis) const {
+    return static_cast<std::int64_t>((static_cast<double>(p[axis]) - low_[axis]) * steps_per_metre_[axis]);
+  }
+
+  Eigen::Array3d low_, steps_per_metre_;
+  std::int64_t x_ = 0, y_ = 0, z_ = 0, count_ = 0;
+};
+
+/// The mean of the points of each cell that lie between two heights above the cell's tangent.
+template <typename TangentOf>
+CellPoints meanPoints(const SortedPoints& points, double low, double high, const TangentOf& tangent_of) {
+  const double height = std::max((points.bounds().high - points.bounds().low).z(), 1e-9);
+  const Eigen::Array3d steps_per_metre =
+      Eigen::Array3d(0x1p20, 0x1p20, 0x1p30) /
+      Eigen::Array3d(points.cells().cell_size, points.cells().cell_size, height);
+  CellPoints result;
+  result.positions.reserve(points.size());
+  result.cells.reserve(points.size());
+  const float* positions = points.positions().data();
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Tangent tangent = tangent_of(n);
+    const Eigen::Vector2d corner = points.corner(n);
+    PointMean mean({corner.x(), corner.y(), points.bounds().low.z()}, steps_per_metre);
+    for (Eigen::Index k = points.begin(n); k < points.end(n); ++k) {
+      const float* p = positions + 3 * k;
+      const double above = tangent.heightAbove(p);
+      if (above >= low && above <= high) mean.add(p);
+    }
+    if (mean.isEmpty()) continue;
+    result.positions.push_back(mean.mean());
+    result.cells.push_back(points.cell(n));
+  }
+  return result;
+}
+
+Eigen::Vector2d centreOf(const SortedPoints& points, std::size_t n) {
+  return points.corner(n).array() + 0.5 * points.cells().cell_size;
+}
+
+}  // namespace
+
+CellPoints representativePoints(const SortedPoints& points, CellStatistic statistic) {
+  if (statistic == CellStatistic::LOWEST) return lowestPoints(points);
+  constexpr double ANY = std::numeric_limits<double>::infinity();
+  return meanPoints(points, -ANY, ANY, [](std::size_t) { return Tangent(); });
+}
+
+CellPoints meanGroundPoints(const SortedPoints& points, const GroundBand& band) {
+  return meanPoints(points, band.low, band.high,
+                    [&](std::size_t n) { return Tangent(band, centreOf(points, n)); });
+}
+
+Spread spreadAround(const SortedPoints& points, const GroundBand& band) {
+  constexpr Eigen::Index ENOUGH = 20000;
+  const auto one_in = static_cast<std::size_t>(std::max<Eigen::Index>(points.positions().cols() / ENOUGH, 1));
+  std::vector<float> heights;
+  heights.reserve(2 * ENOUGH);
+  for (std::size_t n = 0; n < points.size(); n += one_in) {
+    const Tangent tangent(band, centreOf(points, n));
+    for (Eigen::Index k = points.begin(n); k < points.end(n); ++k) {
+      const double height = tangent.heightAbove(points.positions().data() + 3 * k);
+      if (height >= band.low && height <= band.high) heights.push_back(static_cast<float>(height));
+    }
+  }
+  RadixSort sort;
+  return medianSpread(heights, sort);
+}
+
+ElevationGrid elevationOf(const CellPoints& points, const GridGeometry& cells) {
+  ElevationGrid grid{cells, Eigen::ArrayXXd::Zero(cells.rows, cells.cols),
+                     Mask::Constant(cells.rows, cells.cols, false)};
+  for (std::size_t n = 0; n < points.cells.size(); ++n) {
+    grid.elevation.data()[points.cells[n]] = points.positions[n].z();
+    grid.observed.data()[points.cells[n]] = true;
+  }
+  fillEmptyCells(grid.elevation, grid.observed);
+  return grid;
+}
+
+}  // namespace pcl_fft_ground::core

@@ -1,0 +1,86 @@
+#include "ground/robust_choices.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_fft_ground::core {
+namespace {
+
+using Choices = std::vector<RobustChoice>;
+
+/// The value given, or the one chosen, which is then noted with its reason.
+template <typename T>
+T choose(const std::optional<T>& given, T chosen, const char* parameter, const char* reason,
+         Choices& choices) {
+  if (given) return *given;
+  choices.push_back({parameter, static_cast<double>(chosen), reason});
+  return chosen;
+}
+
+/// 36 cells to the largest object, but no more than 4 cells to a point.
+double chooseCellSize(const std::optional<double>& given, double max_object_size,
+                      const Eigen::Array2d& extents, Eigen::Index points, Choices& choices) {
+  constexpr double CELLS_PER_OBJECT = 36, CELLS_PER_POINT = 4;
+  const double by_object = max_object_size / CELLS_PER_OBJECT;
+  const double most_cells = CELLS_PER_POINT * static_cast<double>(points);
+  // A strip narrower than a cell has one row of them.
+  const double by_spacing = std::max(std::sqrt(extents.prod() / most_cells), extents.maxCoeff() / most_cells);
+  const double least = 1e-6 * std::max(1.0, extents.maxCoeff());
+  return choose(given, std::max({by_object, by_spacing, least}), "cell_size",
+                by_object > by_spacing ? "a thirty-sixth of the largest object"
+                                       : "the points are too sparse for smaller cells",
+                choices);
+}
+
+double chooseFinestWavelength(const RobustParameters& parameters, double max_object_size, double cell_size,
+                              Choices& choices) {
+  constexpr double LEAST_CELLS = 3, PER_OBJECT = 10, PER_OBJECT_WITH_BREAKS = 12.5;
+  const double per_object = parameters.max_slope ? PER_OBJECT_WITH_BREAKS : PER_OBJECT;
+  return choose(parameters.finest_wavelength, std::max(max_object_size / per_object, LEAST_CELLS * cell_size),
+                "finest_wavelength",
+                "a tenth of the largest object (less where land breaks), at least three cells", choices);
+}
+
+/// Between points that lie so far apart [m] the ground is not known: on a slope it may differ by the slope
+/// times this distance.
+double pointSpacing(const ElevationGrid& elevation, Eigen::Index points) {
+  const auto observed = static_cast<double>(elevation.observed.count());
+  return elevation.geometry.cell_size * std::min(1.0, std::sqrt(observed / static_cast<double>(points)));
+}
+
+}  // namespace
+
+RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bounds, Eigen::Index points,
+                            Choices& choices) {
+  constexpr double NARROWEST = 1e-3, LEAST_WIDTH = 1e-3;  // of the other extent; [m]
+  constexpr double SLOPE = 0.04;
+  const Eigen::Array2d extents = (bounds.high - bounds.low).head<2>();
+  RobustPlan plan;
+  plan.extent = extents.minCoeff();
+  const double widest = std::max(extents.maxCoeff(), LEAST_WIDTH);
+  const double extent = plan.extent > NARROWEST * widest ? plan.extent : widest;
+  plan.max_object_size = parameters.max_object_size.value_or(parameters.relative_max_object_size * extent);
+  plan.cells = gridAround(
+      bounds, chooseCellSize(parameters.cell_size, plan.max_object_size, extents, points, choices));
+  plan.statistic =
+      choose(parameters.statistic, CellStatistic::LOWEST, "statistic",
+             "walls share cells with the ground; its points' mean takes over once it is found", choices);
+  plan.finest_wavelength =
+      chooseFinestWavelength(parameters, plan.max_object_size, plan.cells.cell_size, choices);
+  plan.slope = parameters.max_slope ? *parameters.max_slope / 3 : SLOPE;
+  return plan;
+}
+
+void chooseTolerances(const RobustParameters& parameters, Eigen::Index points, RobustGround& ground) {
+  constexpr double SCALES = 3, SPACINGS = 1.25, SHARE_OF_OBJECT = 0.0098;
+  constexpr double LEAST_DEPTH = 1, DEPTH_SCALES = 10;
+  const double by_noise = SCALES * ground.scale, by_size = SHARE_OF_OBJECT * ground.max_object_size;
+  ground.tolerance = choose(
+      parameters.height_tolerance, std::max(by_noise, by_size), "height_tolerance",
+      by_noise > by_size ? "three times the spread of the ground points" : "0.98 % of the largest object",
+      ground.choices);
+  ground.slope_tolerance = SPACINGS * pointSpacing(ground.elevation, points);
+  ground.depth_tolerance = std::max(LEAST_DEPTH, DEPTH_SCALES * ground.scale);
+}
+
+}  // namespace pcl_fft_ground::core

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "pcl_fft_ground/core/scan/points.h"
+
+namespace pcl_fft_ground::core {
+
+/** The normal of the plane around which the closest-lying half of the points is flattest.
+ *
+ * From the given direction and from the principal axis in turn: take the thinnest slab across the direction
+ * that holds half of the points, replace the direction by the smallest principal axis of that half, and
+ * repeat (concentration steps of the minimum covariance determinant, Rousseeuw and Van Driessen 1999). Walls,
+ * tall objects and outliers stay outside of the slab, and narrow strips do not tip over.
+ *
+ * A narrow strip (less than half as broad as long) can lie askew on objects that have more than half of the
+ * points. As they stand on the ground, the same steps go on there with the lowest 30 % of the points; their
+ * normal is taken where it leans by more than 5 degrees from the first one and they lie in a slab less than
+ * 0.6 times as thick.
+ *
+ * \param given direction towards which the normal is turned, a unit vector
+ * \return nothing where that half is no flat sheet (spread along the normal above a tenth of that along the
+ * next axis), or where the normal leans by more than 45 degrees from the given direction
+ * \note O(n); about 4,000 points are looked at, chosen by their coordinates, not by their order
+ */
+std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointsView& points, const Eigen::Vector3d& given);
+
+}  // namespace pcl_fft_ground::core
