@@ -1,10 +1,14 @@
 #!/bin/sh
-# Installs the packages that are missing, and only those, on Debian 12, Ubuntu 22.04 and Ubuntu 24.04.
+# Installs the packages that are missing, and only those, on Debian 12 and 13, Ubuntu 22.04 and Ubuntu 24.04.
 #
-#   cmake/install_dependencies.sh PURPOSE...     purposes: library tool tests benchmarks fftw
+#   cmake/install_dependencies.sh PURPOSE...
+#
+#   library tool tests benchmarks fftw documentation style fresh-system
 #
 # Root is asked for (by sudo) only when something is missing. PCL_FFT_GROUND_SKIP_INSTALL=1 skips the whole step.
 set -eu
+
+purposes="library tool tests benchmarks fftw documentation style fresh-system"
 
 fail() {
   echo "install_dependencies.sh: $*" >&2
@@ -13,7 +17,12 @@ fail() {
 
 # commands_of PURPOSE: what must be on the PATH, as command:package, whoever put it there.
 commands_of() {
-  [ "$1" != library ] || echo "c++:g++ cc:gcc cmake:cmake make:make pkg-config:pkg-config"
+  case "$1" in
+    library) echo "c++:g++ cc:gcc cmake:cmake make:make pkg-config:pkg-config" ;;
+    documentation) echo "doxygen:doxygen" ;;
+    style) echo "git:git clang-format:clang-format clang-tidy:clang-tidy" ;;
+    fresh-system) echo "git:git debootstrap:debootstrap unshare:util-linux" ;;
+  esac
 }
 
 # packages_of PURPOSE: development packages. The picture writer draws its text in the DejaVu font.
@@ -24,7 +33,8 @@ packages_of() {
     tests) echo "libgtest-dev" ;;
     benchmarks) echo "libbenchmark-dev" ;;
     fftw) echo "libfftw3-dev" ;;
-    *) fail "unknown purpose '$1' (allowed: library tool tests benchmarks fftw)" ;;
+    documentation | style | fresh-system) ;;
+    *) fail "unknown purpose '$1' (allowed: $purposes)" ;;
   esac
 }
 
@@ -79,7 +89,7 @@ install_packages() {
     fail "apt-get could not install: $*"
 }
 
-[ $# -gt 0 ] || fail "say what for: library tool tests benchmarks fftw"
+[ $# -gt 0 ] || fail "say what for: $purposes"
 commands=""
 packages=""
 for purpose in "$@"; do

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12, Ubuntu 22.04 or 24.04), builds the command, simulates a scan of a wreck site and
+# Installs what is missing (Debian 12 or 13, Ubuntu 22.04 or 24.04), builds the command, simulates a scan of a wreck site and
 # takes the ground out of it. The results go to demo_output in the checkout.
 #
 # PCL_FFT_GROUND_BUILD_DIR   where to build (build/demo in the checkout)

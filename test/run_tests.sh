@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12, Ubuntu 22.04 or 24.04), builds everything and runs all tests.
+# Installs what is missing (Debian 12 or 13, Ubuntu 22.04 or 24.04), builds everything and runs all tests.
 #
 #   test/run_tests.sh [CTEST OPTION...]          for example  test/run_tests.sh -L core
 #

@@ -2,6 +2,7 @@
 
 #include <pcl/search/kdtree.h>
 
+#include <utility>
 #include <vector>
 
 namespace pcl_fft_ground::impl {
@@ -17,11 +18,16 @@ class LazyKdTree : public pcl::search::KdTree<PointT> {
   using typename Base::IndicesConstPtr;
   using typename Base::PointCloudConstPtr;
 
-  void setInputCloud(const PointCloudConstPtr& cloud,
-                     const IndicesConstPtr& indices = IndicesConstPtr()) override {
+  /// What PCL's tree returns: nothing before PCL 1.14, whether it could be built since then.
+  using SetInputResult =
+      decltype(std::declval<Base&>().setInputCloud(std::declval<const PointCloudConstPtr&>()));
+
+  SetInputResult setInputCloud(const PointCloudConstPtr& cloud,
+                               const IndicesConstPtr& indices = IndicesConstPtr()) override {
     cloud_ = cloud;
     cloud_indices_ = indices;
     built_ = false;
+    return SetInputResult(true);
   }
 
   int nearestKSearch(const PointT& point, int k, pcl::Indices& indices,
