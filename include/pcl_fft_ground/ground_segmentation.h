@@ -11,8 +11,8 @@
 #include "pcl_fft_ground/core/ground/ground_surface.h"
 #include "pcl_fft_ground/core/ground/labels.h"
 #include "pcl_fft_ground/core/scan/frame.h"
-#include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "pcl_fft_ground/core/scan/points.h"
+#include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/export.h"
 
 namespace pcl_fft_ground {
@@ -75,6 +75,10 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   /// ground.
   std::vector<double> getHeightAboveGround() const;
 
+  /// The points of the input that the last run worked on (core::usablePoints()), in its level frame; without
+  /// an input or a valid list of indices none. Transformed at each call.
+  core::Points getLevelPoints() const;
+
   /// Frame of the last run: brings input points into the level frame whose +z is up. Identity before the
   /// first run.
   const Eigen::Isometry3d& getFrame() const { return frame_from_input_; }
@@ -134,8 +138,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
  private:
   core::Label keptLabel() const { return negative_ ? core::Label::GROUND : core::Label::OBJECT; }
   core::Labels computeLabels();
-  core::Labels labelAroundFarPoints(core::Points points, const std::vector<Eigen::Index>& far);
-  core::Labels labelScan(core::Points points, const core::PointStatistics& statistics);
+  core::Labels labelScan(const core::PreparedScan& scan);
   void reportError(const std::string& sentence);
   void copyPoints(const pcl::Indices& indices, PointCloud& output) const;
   void copyOrganized(const core::Labels& labels, PointCloud& output) const;

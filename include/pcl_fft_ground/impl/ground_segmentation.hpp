@@ -14,7 +14,6 @@
 #include <pcl/filters/impl/filter_indices.hpp>
 #include <pcl/impl/pcl_base.hpp>
 
-#include "pcl_fft_ground/core/scan/far_points.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 
@@ -121,6 +120,14 @@ std::vector<double> GroundSegmentation<PointT>::getHeightAboveGround() const {
 }
 
 template <typename PointT>
+core::Points GroundSegmentation<PointT>::getLevelPoints() const {
+  if (!input_) return {};
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  if (!points.areValid()) return {};
+  return core::transformed(core::usablePoints(points.rawPoints()).points, frame_from_input_);
+}
+
+template <typename PointT>
 void GroundSegmentation<PointT>::setHeightTolerance(double tolerance) {
   requireParameter(std::isfinite(tolerance), "height tolerance", tolerance, "a finite number of metres");
   height_tolerance_ = tolerance;
@@ -182,59 +189,35 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   far_points_.clear();
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   if (!points.areValid()) {
-    labelScan(core::Points(), core::PointStatistics());  // forgets the last run
+    labelScan(core::PreparedScan());  // forgets the last run
     reportError("the indices reach beyond the cloud of " + std::to_string(input_->size()) + " points");
     return {};
   }
-  core::Points finite = points.finitePoints();
-  const std::vector<std::size_t> positions = points.finitePositions(static_cast<std::size_t>(finite.cols()));
-  const core::PointStatistics statistics = core::summarise(finite);
-  const std::vector<Eigen::Index> far = core::findFarPoints(finite, statistics);
-  core::Labels labels =
-      far.empty() ? labelScan(std::move(finite), statistics) : labelAroundFarPoints(std::move(finite), far);
-  for (const Eigen::Index n : far)
-    far_points_.push_back(points.index(positions.empty() ? static_cast<std::size_t>(n) : positions[n]));
+  const core::PreparedScan scan = core::prepare(points.rawPoints(), frame_parameters_);
+  core::Labels labels = labelScan(scan);
+  const std::vector<Eigen::Index>& far = scan.usable.far;
+  for (const Eigen::Index n : far) far_points_.push_back(points.index(static_cast<std::size_t>(n)));
   if (!far.empty())
     warn("points too far from all others to belong to the scan, left out as objects: " +
          std::to_string(far.size()));
   if (labels.size() == points.size()) return labels;
 
   core::Labels scattered(points.size(), core::Label::NEITHER);
-  for (std::size_t n = 0; n < labels.size(); ++n) scattered[positions[n]] = labels[n];
+  for (std::size_t n = 0; n < labels.size(); ++n)
+    scattered[static_cast<std::size_t>(scan.usable.column(static_cast<Eigen::Index>(n)))] = labels[n];
+  for (const Eigen::Index n : far) scattered[static_cast<std::size_t>(n)] = core::Label::OBJECT;
   return scattered;
 }
 
-/// Labels the far points as objects and the others as if the far ones were not there.
+/// Lets the method label the points of a scan; all ground where it cannot.
 template <typename PointT>
-core::Labels GroundSegmentation<PointT>::labelAroundFarPoints(core::Points points,
-                                                              const std::vector<Eigen::Index>& far) {
-  const Eigen::Index count = points.cols();
-  std::vector<bool> is_far(static_cast<std::size_t>(count), false);
-  for (const Eigen::Index n : far) is_far[static_cast<std::size_t>(n)] = true;
-  Eigen::Index near_count = 0;
-  for (Eigen::Index n = 0; n < count; ++n)
-    if (!is_far[static_cast<std::size_t>(n)]) points.col(near_count++) = points.col(n);
-  points.conservativeResize(Eigen::NoChange, near_count);
-
-  const core::Labels near_labels = labelScan(points, core::summarise(points));
-  core::Labels labels(static_cast<std::size_t>(count), core::Label::OBJECT);
-  auto next = near_labels.begin();
-  for (std::size_t n = 0; n < labels.size(); ++n)
-    if (!is_far[n]) labels[n] = *next++;
-  return labels;
-}
-
-/// Levels the points and lets the method label them; all ground where it cannot.
-template <typename PointT>
-core::Labels GroundSegmentation<PointT>::labelScan(core::Points points,
-                                                   const core::PointStatistics& statistics) {
-  const auto count = static_cast<std::size_t>(points.cols());
-  frame_from_input_ = core::estimateFrame(points, statistics, frame_parameters_);
+core::Labels GroundSegmentation<PointT>::labelScan(const core::PreparedScan& scan) {
+  frame_from_input_ = scan.frame_from_input;
   try {
-    return labelPoints(core::transformed(std::move(points), frame_from_input_), frame_from_input_);
+    return labelPoints(scan.usable.points, frame_from_input_);
   } catch (const std::exception& problem) {
     reportError(problem.what());
-    return core::Labels(count, core::Label::GROUND);
+    return core::Labels(static_cast<std::size_t>(scan.usable.points.cols()), core::Label::GROUND);
   }
 }
 

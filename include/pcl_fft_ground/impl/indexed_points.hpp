@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pcl_fft_ground/core/scan/points.h"
+#include "pcl_fft_ground/core/scan/prepare.h"
 
 namespace pcl_fft_ground::impl {
 
@@ -36,6 +36,17 @@ class IndexedPoints {
     for (const pcl::index_t i : *indices_)
       if (i < 0 || static_cast<std::size_t>(i) >= cloud_.size()) return false;
     return true;
+  }
+
+  /// All points in the order of the list, finite or not.
+  core::RawPoints rawPoints() const {
+    core::RawPoints points(3, static_cast<Eigen::Index>(size()));
+    for (std::size_t n = 0; n < size(); ++n) {
+      const PointT& p = (*this)[n];
+      points.col(static_cast<Eigen::Index>(n)) =
+          Eigen::Vector3f(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+    }
+    return points;
   }
 
   /// The finite points in the order of the list.

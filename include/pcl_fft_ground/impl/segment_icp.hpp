@@ -46,15 +46,14 @@ std::vector<pcl::PointIndices> clustersOf(const typename pcl::PointCloud<PointT>
   return clusters;
 }
 
-/// Columns of the finite points of a cloud that belong to each cluster.
+/// Columns of the usable points of a cloud that belong to each cluster.
 template <typename PointT>
 std::vector<std::vector<Eigen::Index>> columnsOf(const pcl::PointCloud<PointT>& cloud,
+                                                 const core::UsablePoints& usable,
                                                  const std::vector<pcl::PointIndices>& clusters) {
   std::vector<Eigen::Index> column(cloud.size(), -1);
-  const IndexedPoints<PointT> points(cloud, nullptr);
-  Eigen::Index finite = 0;
-  for (std::size_t n = 0; n < cloud.size(); ++n)
-    if (points.isFinite(n)) column[n] = finite++;
+  for (Eigen::Index n = 0; n < usable.points.cols(); ++n)
+    column[static_cast<std::size_t>(usable.column(n))] = n;
   std::vector<std::vector<Eigen::Index>> result;
   for (const pcl::PointIndices& cluster : clusters) {
     if (!IndexedPoints<PointT>(cloud, &cluster.indices).areValid())
@@ -106,21 +105,25 @@ void SegmentICP<PointSource, PointTarget>::setUpDirection(const Eigen::Vector3d&
 
 template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::describe(const Eigen::Matrix3d& level_from_input) {
-  const auto levelled = [&](const core::Points& points) -> core::Points {
-    return level_from_input.cast<float>() * points;
+  const auto prepared = [&](core::RawPoints raw) {
+    core::UsablePoints usable = core::usablePoints(std::move(raw));
+    usable.points = level_from_input.cast<float>() * usable.points;
+    return usable;
   };
-  const core::Points source = levelled(impl::IndexedPoints<PointSource>(*input_, nullptr).finitePoints());
-  const core::Points target = levelled(impl::IndexedPoints<PointTarget>(*target_, nullptr).finitePoints());
+  const core::UsablePoints source = prepared(impl::IndexedPoints<PointSource>(*input_, nullptr).rawPoints());
+  const core::UsablePoints target = prepared(impl::IndexedPoints<PointTarget>(*target_, nullptr).rawPoints());
   core::SegmentParameters parameters = segment_parameters_;
   if (!parameters.voxel_size)
-    parameters.voxel_size = std::max(core::voxelSizeFor(source), core::voxelSizeFor(target));
+    parameters.voxel_size = std::max(core::voxelSizeFor(source.points), core::voxelSizeFor(target.points));
   const double leaf_size = *parameters.voxel_size;
   const Clusters source_clusters = impl::clustersOf<PointSource>(
       input_, indices_, source_segments_, source_ground_, source_clusterer_, leaf_size);
   const Clusters target_clusters = impl::clustersOf<PointTarget>(
       target_, nullptr, target_segments_, target_ground_, target_clusterer_, leaf_size);
-  source_scan_ = core::describeScan(source, impl::columnsOf(*input_, source_clusters), parameters);
-  target_scan_ = core::describeScan(target, impl::columnsOf(*target_, target_clusters), parameters);
+  source_scan_ =
+      core::describeScan(source.points, impl::columnsOf(*input_, source, source_clusters), parameters);
+  target_scan_ =
+      core::describeScan(target.points, impl::columnsOf(*target_, target, target_clusters), parameters);
 }
 
 template <typename PointSource, typename PointTarget>

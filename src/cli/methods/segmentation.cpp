@@ -4,16 +4,15 @@
 #include <cmath>
 
 #include "errors.h"
-#include "pcl_fft_ground/core/scan/far_points.h"
-#include "pcl_fft_ground/impl/indexed_points.hpp"
+#include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
 
 /// The highest point of each cell in the frame of the method, whatever cells it has itself.
-core::ElevationGrid elevationOf(const Cloud& cloud, const Segmenter& segmenter) {
-  const core::Points level = core::transformed(compactPoints(*cloud.points), segmenter.filter->getFrame());
+core::ElevationGrid elevationOf(const Segmenter& segmenter) {
+  const core::Points level = segmenter.filter->getLevelPoints();
   return core::rasteriseHighest(level, core::gridAround(core::boundsOf(level), segmenter.cellSize()));
 }
 
@@ -42,15 +41,11 @@ void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& p
                     " points is finite; at least one has to be");
 }
 
-core::Points compactPoints(const pcl::PointCloud<Point>& cloud) {
-  const impl::IndexedPoints<Point> all(cloud, nullptr);
-  core::Points points = all.finitePoints();
-  const std::vector<Eigen::Index> far = core::findFarPoints(points, core::summarise(points));
-  for (auto n = far.rbegin(); n != far.rend(); ++n) {
-    points.col(*n) = points.rightCols<1>();
-    points.conservativeResize(Eigen::NoChange, points.cols() - 1);
-  }
-  return points;
+core::UsablePoints usablePoints(const pcl::PointCloud<Point>& cloud) {
+  core::RawPoints points(3, static_cast<Eigen::Index>(cloud.size()));
+  for (std::size_t n = 0; n < cloud.size(); ++n)
+    points.col(static_cast<Eigen::Index>(n)) = cloud[n].getVector3fMap();
+  return core::usablePoints(std::move(points));
 }
 
 core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects) {
@@ -67,7 +62,7 @@ Segmentation segmentCloud(const std::string& path, const Cloud& cloud, Segmenter
   segmenter.filter->segment(result.ground, result.objects);
   if (!segmenter.filter->getError().empty()) throw WorkError(path + ": " + segmenter.filter->getError());
   result.labels = labelsOf(cloud.points->size(), result.ground, result.objects);
-  result.elevation = elevationOf(cloud, segmenter);
+  result.elevation = elevationOf(segmenter);
   result.surface = atCells(segmenter.filter->getGroundSurface(), result.elevation.geometry);
   if (!cloud.labels.empty()) result.confusion = core::compare(cloud.labels, result.labels);
   return result;

@@ -11,7 +11,7 @@
 #include "methods/segmenter.h"
 #include "pcl_fft_ground/core/grid/elevation_grid.h"
 #include "pcl_fft_ground/core/ground/ground_surface.h"
-#include "pcl_fft_ground/core/scan/points.h"
+#include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/simulation/evaluation.h"
 
 namespace pcl_fft_ground::cli {
@@ -39,8 +39,8 @@ struct Segmentation {
 /// \throws WorkError naming the file if none of the points is finite
 void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& points);
 
-/// The finite points of a cloud without those far from all others (core::findFarPoints()), in any order.
-core::Points compactPoints(const pcl::PointCloud<Point>& cloud);
+/// The points of a cloud that can be worked with.
+core::UsablePoints usablePoints(const pcl::PointCloud<Point>& cloud);
 
 /// A label per point of a cloud of `count` points: NEITHER where it is in neither list.
 core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects);

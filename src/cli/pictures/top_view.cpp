@@ -31,7 +31,7 @@ TopView viewFromAbove(const pcl::PointCloud<Point>& cloud, const Eigen::Vector3d
   TopView view;
   view.cells.assign(cloud.size(), -1);
   const Eigen::Isometry3d level_from_input(Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()));
-  const core::Points level = core::transformed(compactPoints(cloud), level_from_input);
+  const core::Points level = core::transformed(usablePoints(cloud).points, level_from_input);
   if (level.cols() == 0) return view;
   const core::Bounds bounds = core::boundsOf(level);
   const core::ElevationGrid grid =

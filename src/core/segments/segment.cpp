@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "align/voxel_means.h"
-#include "pcl_fft_ground/core/scan/far_points.h"
-#include "pcl_fft_ground/core/scan/point_statistics.h"
+#include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "scan/parameter_check.h"
 #include "segments/voxel_set.h"
@@ -84,16 +83,8 @@ Points pointsWithin(const Points& points, const Eigen::AlignedBox3f& box) {
 
 /// The scan proper, whatever stray returns there are far away.
 Eigen::AlignedBox3f boxWithoutFarPoints(const Points& points) {
-  const std::vector<Eigen::Index> far = findFarPoints(points, summarise(points));
-  Eigen::AlignedBox3f box;
-  auto next = far.begin();
-  for (Eigen::Index n = 0; n < points.cols(); ++n) {
-    if (next != far.end() && *next == n)
-      ++next;
-    else
-      box.extend(points.col(n));
-  }
-  return box;
+  const Bounds bounds = usablePoints(points).statistics.bounds;
+  return {bounds.low.cast<float>().matrix(), bounds.high.cast<float>().matrix()};
 }
 
 /// Finds the mean points of the voxels that objects occupy, as far as they belong to the scan proper.
