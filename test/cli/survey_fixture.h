@@ -16,17 +16,24 @@
 
 namespace pcl_fft_ground::cli {
 
-/// A survey of the first four sub-maps along a transect of a pipe field, made once.
+/// A survey of the first four sub-maps along a transect of a pipe field, made once for all suites of the
+/// program, which leave it as it is.
 class SurveyFixture : public CommandFixture {
  protected:
   static void SetUpTestSuite() {
-    site_ = makeTemporaryFolder();
-    ASSERT_FALSE(site_.empty());
-    run(runSimulate, {"survey", "pipes", "-o", site_, "--points", "60000", "--seed", "1"});
+    static const struct Site {
+      const std::string folder = makeTemporaryFolder();
+      ~Site() {
+        if (!folder.empty()) std::filesystem::remove_all(folder);
+      }
+    } site;
+    if (!site_.empty()) return;
+    ASSERT_FALSE(site.folder.empty());
+    run(runSimulate, {"survey", "pipes", "-o", site.folder, "--points", "60000", "--seed", "1"});
     for (int i = 4; i < 26; ++i)
-      std::filesystem::remove(site_ + (i < 10 ? "/submap_0" : "/submap_") + std::to_string(i) + ".pcd");
+      std::filesystem::remove(site.folder + (i < 10 ? "/submap_0" : "/submap_") + std::to_string(i) + ".pcd");
+    site_ = site.folder;
   }
-  static void TearDownTestSuite() { std::filesystem::remove_all(site_); }
 
   static std::string submap(int i) { return site_ + "/submap_0" + std::to_string(i) + ".pcd"; }
   static Words with(Words words, const Words& more) {
