@@ -14,5 +14,5 @@ set(DOXYGEN_WARN_IF_UNDOCUMENTED NO)
 if(PCL_FFT_GROUND_WERROR)
   set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 endif()
-doxygen_add_docs(documentation README.md CHANGELOG.md include examples/guide
+doxygen_add_docs(documentation README.md CHANGELOG.md include examples/guide test/filters/FILTER_CONTRACT.md
                  WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
