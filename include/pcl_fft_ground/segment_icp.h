@@ -1,16 +1,16 @@
 #pragma once
 
-#include <pcl/PointIndices.h>
 #include <pcl/registration/registration.h>
 
 #include <Eigen/Geometry>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pcl_fft_ground/core/align/segment_alignment.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 #include "pcl_fft_ground/registration_export.h"
+#include "pcl_fft_ground/scan_describer.h"
 
 namespace pcl_fft_ground {
 
@@ -19,7 +19,12 @@ namespace pcl_fft_ground {
  * Segments are given (setSourceSegments(), setTargetSegments()) or found by a ground segmentation and a
  * clusterer. The initial guess is that of align(): where navigation puts the source, in the target's frame. A
  * pair that cannot be aligned with confidence is refused: hasConverged() is false, getRefusal() says why, and
- * the final transformation is the guess.
+ * the final transformation is the guess. Nothing but a setter throws: data that do not let it work are a
+ * refusal, too, and getError() then says why.
+ *
+ * setIndices() chooses points of the source; the target is taken whole. The target is described once and kept
+ * for the next sources, until setInputTarget() or a setter that concerns it is called: call one of them after
+ * the cloud, or a segmentation that was set, has been changed in place.
  *
  * The convergence criteria and the correspondences of `pcl::Registration` have no influence. No tree is built
  * over the target unless getFitnessScore() asks for one.
@@ -32,37 +37,39 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   using PointCloudSource = typename Base::PointCloudSource;
   using Ptr = pcl::shared_ptr<SegmentICP<PointSource, PointTarget>>;
   using ConstPtr = pcl::shared_ptr<const SegmentICP<PointSource, PointTarget>>;
+  using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
   using Clusters = std::vector<pcl::PointIndices>;
 
   /// Finds the clusters of the object points of a cloud.
   template <typename PointT>
-  using Clusterer = std::function<Clusters(const typename pcl::PointCloud<PointT>::ConstPtr& cloud,
-                                           const pcl::IndicesConstPtr& objects)>;
+  using Clusterer = typename ScanDescriber<PointT>::Clusterer;
 
   SegmentICP();
 
-  /// Clusters of object points of the source; an empty list lets them be found again.
-  void setSourceSegments(const Clusters& segments) { source_segments_ = segments; }
+  void setInputTarget(const PointCloudTargetConstPtr& cloud) override;
+
+  /// Clusters of object points of the source, as indices into it; an empty list lets them be found again.
+  void setSourceSegments(const Clusters& segments) { source_describer_.setClusters(segments); }
+  const Clusters& getSourceSegments() const { return source_describer_.getClusters(); }
   /// Clusters of object points of the target; an empty list lets them be found again.
-  void setTargetSegments(const Clusters& segments) { target_segments_ = segments; }
+  void setTargetSegments(const Clusters& segments);
+  const Clusters& getTargetSegments() const { return target_describer_.getClusters(); }
 
   /// What finds the objects where no segments are given; FFTGroundSegmentation with its defaults if not set.
   void setGroundSegmentation(const typename GroundSegmentation<PointSource>::Ptr& source,
-                             const typename GroundSegmentation<PointTarget>::Ptr& target) {
-    source_ground_ = source;
-    target_ground_ = target;
-  }
+                             const typename GroundSegmentation<PointTarget>::Ptr& target);
 
   /// What clusters the objects where no segments are given; voxel contact if not set.
-  void setClusterer(const Clusterer<PointSource>& source, const Clusterer<PointTarget>& target) {
-    source_clusterer_ = source;
-    target_clusterer_ = target;
-  }
+  void setClusterer(const Clusterer<PointSource>& source, const Clusterer<PointTarget>& target);
+
+  /// All settings of the alignment at once. Setters throw `pcl::PCLException` on values out of range.
+  void setAlignmentParameters(const core::AlignmentParameters& parameters);
+  const core::AlignmentParameters& getAlignmentParameters() const { return parameters_; }
 
   /// How far off the initial guess may be; sets the gates that belong to it.
   void setSearchMode(core::SearchMode mode) { parameters_.gates = core::gatesOf(mode); }
   /// Limits of the correction of the initial guess.
-  void setGates(const core::SearchGates& gates) { parameters_.gates = gates; }
+  void setGates(const core::SearchGates& gates);
   const core::SearchGates& getGates() const { return parameters_.gates; }
 
   /// N_seg: fewer matched segments give no alignment, at least 1. Default 3.
@@ -88,38 +95,53 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   core::Matching getMatching() const { return parameters_.matching; }
 
   /// Which clusters become segments.
-  void setSegmentParameters(const core::SegmentParameters& parameters) { segment_parameters_ = parameters; }
-  const core::SegmentParameters& getSegmentParameters() const { return segment_parameters_; }
+  void setSegmentParameters(const core::SegmentParameters& parameters);
+  const core::SegmentParameters& getSegmentParameters() const {
+    return source_describer_.getSegmentParameters();
+  }
 
   /// How neighbours are searched; the default is core::columnNeighbours.
   void setNeighbourSearch(const core::NearestNeighboursFactory& factory) { parameters_.neighbours = factory; }
 
   /// Direction of positive elevation in both frames, any finite length above 0. Default +z.
   void setUpDirection(const Eigen::Vector3d& up);
-  Eigen::Vector3d getUpDirection() const { return up_direction_; }
+  Eigen::Vector3d getUpDirection() const { return source_describer_.getUpDirection(); }
 
+  /** Aligns in double precision and moves no points: align() but for the rounding of its floats.
+   * \param target_from_source the initial guess, a rigid motion
+   * \return what getAlignment() returns from then on
+   */
+  const core::Alignment& computeAlignment(const Eigen::Isometry3d& target_from_source);
+
+  /// All that the last pair came to, source moving and target reference, in the frames of the clouds.
+  const core::Alignment& getAlignment() const { return alignment_; }
   /// Why the last pair was refused; empty if it was not.
   const std::string& getRefusal() const { return alignment_.refusal; }
+  /// What kept the last source from being worked on; empty if nothing did.
+  const std::string& getSourceError() const { return source_describer_.getError(); }
+  /// What kept the last target from being worked on; empty if nothing did.
+  const std::string& getTargetError() const { return target_describer_.getError(); }
   /// What the last transform comes from.
   core::AlignmentMethod getMethod() const { return alignment_.method; }
-  /// Matched segments (moving: source, reference: target), as indices into getSourceSegments() and
-  /// getTargetSegments().
+  /// Matched segments (moving: source, reference: target), as indices into the segments of getSourceScan()
+  /// and getTargetScan().
   const std::vector<core::SegmentMatch>& getMatches() const { return alignment_.matches; }
-  /// Segments of the last source, in a frame whose z axis is up.
-  const std::vector<core::Segment>& getSourceSegments() const { return source_scan_.segments; }
-  /// Segments of the last target, in a frame whose z axis is up.
-  const std::vector<core::Segment>& getTargetSegments() const { return target_scan_.segments; }
+  /// The last source as it was aligned, in a frame whose z axis is up.
+  const core::ScanSegments& getSourceScan() const { return source_scan_; }
+  /// The last target, likewise; no segments before the first pair.
+  const core::ScanSegments& getTargetScan() const { return target_scan_; }
   /// Share of the object points seen by both scans that agree, 0 to 1.
   double getScore() const { return alignment_.score; }
   /// Covariance of (translation [m], rotation vector [rad]) of a small motion after the transform, in the
   /// target's frame.
-  const Eigen::Matrix<double, 6, 6>& getCovariance() const { return alignment_.covariance; }
+  const core::Matrix6d& getCovariance() const { return alignment_.covariance; }
 
  protected:
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
  private:
   using Base::converged_;
+  using Base::fake_indices_;
   using Base::final_transformation_;
   using Base::indices_;
   using Base::input_;
@@ -127,19 +149,17 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   using Base::target_;
   using Base::transformation_;
 
-  void describe(const Eigen::Matrix3d& level_from_input);
+  void forgetTarget() { target_voxel_size_.reset(); }
+  std::string describeScans();
+  void alignFrom(const Eigen::Isometry3d& guess);
 
   core::AlignmentParameters parameters_;
-  core::SegmentParameters segment_parameters_;
-  Eigen::Vector3d up_direction_ = Eigen::Vector3d::UnitZ();
-  Clusters source_segments_;
-  Clusters target_segments_;
-  typename GroundSegmentation<PointSource>::Ptr source_ground_;
-  typename GroundSegmentation<PointTarget>::Ptr target_ground_;
-  Clusterer<PointSource> source_clusterer_;
-  Clusterer<PointTarget> target_clusterer_;
+  ScanDescriber<PointSource> source_describer_;
+  ScanDescriber<PointTarget> target_describer_;
   core::ScanSegments source_scan_;
   core::ScanSegments target_scan_;
+  std::optional<double>
+      target_voxel_size_;  ///< asked for when the target was described; none: it was not yet
   core::Alignment alignment_;
 };
 

@@ -4,7 +4,11 @@
 #include <pcl/exceptions.h>
 #include <pcl/point_types.h>
 
+#include <cmath>
+#include <limits>
+
 #include "pcl_fft_ground/core/segments/voxel_clusters.h"
+#include "pcl_fft_ground/fft_ground_segmentation.h"
 #include "pcl_fft_ground/kd_tree_neighbours.h"
 #include "stone_site.h"
 
@@ -104,7 +108,91 @@ TEST_F(SegmentICPTest, TheFitnessScoreBuildsItsTreeWhenAskedFor) {
   EXPECT_LT(icp_.getFitnessScore(0.05 * 0.05), 5e-4);
 }
 
+TEST_F(SegmentICPTest, ComputesInDoubleWhatAlignRounds) {
+  const Eigen::Isometry3d guess = Eigen::Translation3d(0.1, 0, 0) * TRUTH;
+  const Eigen::Matrix4d precise = icp_.computeAlignment(guess).reference_from_moving.matrix();
+  EXPECT_TRUE(icp_.hasConverged()) << icp_.getRefusal();
+  EXPECT_EQ(icp_.getFinalTransformation(), precise.cast<float>().eval());
+  align(0.1);
+  EXPECT_TRUE(icp_.getFinalTransformation().isApprox(precise.cast<float>(), 1e-4F));
+}
+
+/// Counts how often it is asked to segment.
+class CountingGround : public FFTGroundSegmentation<pcl::PointXYZ> {
+ public:
+  int runs = 0;
+
+ protected:
+  core::Labels labelPoints(const core::Points& points, const Eigen::Isometry3d& frame_from_input) override {
+    ++runs;
+    return FFTGroundSegmentation::labelPoints(points, frame_from_input);
+  }
+};
+
+TEST_F(SegmentICPTest, TheTargetIsDescribedOnceForManySources) {
+  const pcl::shared_ptr<CountingGround> source(new CountingGround), target(new CountingGround);
+  icp_.setGroundSegmentation(source, target);
+  align(0.1);
+  const Icp::Matrix4 first = icp_.getFinalTransformation();
+  align(0.1);
+  EXPECT_EQ(icp_.getFinalTransformation(), first);
+  EXPECT_EQ(source->runs, 2);
+  EXPECT_EQ(target->runs, 1);
+  icp_.setInputTarget(cloudOf(reference_));
+  align(0.1);
+  EXPECT_EQ(target->runs, 2);
+  icp_.setSegmentParameters(icp_.getSegmentParameters());
+  align(0.1);
+  EXPECT_EQ(target->runs, 3);
+}
+
+TEST_F(SegmentICPTest, OnlyTheIndexedPointsOfTheSourceTakePart) {
+  const pcl::IndicesPtr left(new pcl::Indices);
+  const Cloud& cloud = *icp_.getInputSource();
+  for (std::size_t n = 0; n < cloud.size(); ++n)
+    if (cloud[n].x < 0.3F) left->push_back(static_cast<pcl::index_t>(n));
+  icp_.setIndices(left);
+  align(0.1);
+  EXPECT_EQ(aligned_.size(), left->size());
+  EXPECT_LT(icp_.getSourceScan().surface.row(0).maxCoeff(), 0.3F + 0.02F);
+}
+
+TEST_F(SegmentICPTest, WhatCannotBeWorkedOnIsARefusalAndNoException) {
+  Icp::Clusters beyond(1);
+  beyond[0].indices = {1000000000};
+  icp_.setSourceSegments(beyond);
+  align(0.1);
+  EXPECT_FALSE(icp_.hasConverged());
+  EXPECT_NE(icp_.getSourceError(), "");
+  EXPECT_NE(icp_.getRefusal().find(icp_.getSourceError()), std::string::npos);
+  EXPECT_EQ(icp_.getTargetError(), "");
+
+  icp_.setSourceSegments({});
+  align(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(icp_.hasConverged());
+  EXPECT_NE(icp_.getRefusal(), "");
+
+  icp_.setInputTarget(Cloud::Ptr(new Cloud(1, 1, {NAN, NAN, NAN})));
+  align(0.1);
+  EXPECT_FALSE(icp_.hasConverged());
+  EXPECT_NE(icp_.getTargetError(), "");
+  EXPECT_FALSE(Icp().computeAlignment(TRUTH).accepted);
+}
+
 TEST_F(SegmentICPTest, RejectsParametersOutOfRange) {
+  core::SearchGates gates = icp_.getGates();
+  gates.max_rise = 0;
+  EXPECT_THROW(icp_.setGates(gates), pcl::PCLException);
+  gates.max_rise = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(icp_.setGates(gates), pcl::PCLException);
+  core::SegmentParameters segments;
+  segments.voxel_size = -1;
+  EXPECT_THROW(icp_.setSegmentParameters(segments), pcl::PCLException);
+  EXPECT_FALSE(icp_.getSegmentParameters().voxel_size);
+  core::AlignmentParameters parameters;
+  parameters.min_matches = 0;
+  EXPECT_THROW(icp_.setAlignmentParameters(parameters), pcl::PCLException);
+
   EXPECT_THROW(icp_.setMinMatches(0), pcl::PCLException);
   EXPECT_THROW(icp_.setMinScore(1.5), pcl::PCLException);
   EXPECT_THROW(icp_.setMaxSigma(0), pcl::PCLException);

@@ -1,71 +1,19 @@
 #pragma once
 
 #include <pcl/common/transforms.h>
+#include <pcl/console/print.h>
 #include <pcl/exceptions.h>
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
+#include <stdexcept>
 
 #include <pcl/impl/pcl_base.hpp>
 
-#include "pcl_fft_ground/core/segments/voxel_clusters.h"
-#include "pcl_fft_ground/fft_ground_segmentation.h"
-#include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/impl/lazy_kd_tree.hpp"
+#include "pcl_fft_ground/impl/scan_describer.hpp"
 #include "pcl_fft_ground/segment_icp.h"
-#include "pcl_fft_ground/voxel_cluster_extraction.h"
 
 namespace pcl_fft_ground {
-namespace impl {
-
-/// Segments of a cloud: those given or, without any, those that ground segmentation and clusterer find.
-template <typename PointT, typename Clusterer>
-std::vector<pcl::PointIndices> clustersOf(const typename pcl::PointCloud<PointT>::ConstPtr& cloud,
-                                          const pcl::IndicesConstPtr& indices,
-                                          const std::vector<pcl::PointIndices>& given,
-                                          const typename GroundSegmentation<PointT>::Ptr& ground_segmentation,
-                                          const Clusterer& clusterer, double leaf_size) {
-  if (!given.empty()) return given;
-  typename GroundSegmentation<PointT>::Ptr segmentation = ground_segmentation;
-  if (!segmentation) segmentation.reset(new FFTGroundSegmentation<PointT>);
-  segmentation->setInputCloud(cloud);
-  // All points of the target: PCLBase copies constant indices, so that there it must not be given none.
-  segmentation->setIndices(indices ? pcl::IndicesPtr(new pcl::Indices(*indices)) : pcl::IndicesPtr());
-  pcl::PointIndices ground;
-  const pcl::PointIndices::Ptr objects(new pcl::PointIndices);
-  segmentation->segment(ground, *objects);
-  const pcl::IndicesConstPtr object_indices(new pcl::Indices(objects->indices));
-  if (clusterer) return clusterer(cloud, object_indices);
-  VoxelClusterExtraction<PointT> extraction;
-  extraction.setLeafSize(leaf_size);
-  extraction.setInputCloud(cloud);
-  extraction.setIndices(object_indices);
-  std::vector<pcl::PointIndices> clusters;
-  if (!object_indices->empty()) extraction.extract(clusters);
-  return clusters;
-}
-
-/// Columns of the usable points of a cloud that belong to each cluster.
-template <typename PointT>
-std::vector<std::vector<Eigen::Index>> columnsOf(const pcl::PointCloud<PointT>& cloud,
-                                                 const core::UsablePoints& usable,
-                                                 const std::vector<pcl::PointIndices>& clusters) {
-  std::vector<Eigen::Index> column(cloud.size(), -1);
-  for (Eigen::Index n = 0; n < usable.points.cols(); ++n)
-    column[static_cast<std::size_t>(usable.column(n))] = n;
-  std::vector<std::vector<Eigen::Index>> result;
-  for (const pcl::PointIndices& cluster : clusters) {
-    if (!IndexedPoints<PointT>(cloud, &cluster.indices).areValid())
-      throw pcl::PCLException("SegmentICP: the indices of a segment reach beyond its cloud");
-    std::vector<Eigen::Index>& columns = result.emplace_back();
-    for (const pcl::index_t n : cluster.indices)
-      if (column[static_cast<std::size_t>(n)] >= 0) columns.push_back(column[static_cast<std::size_t>(n)]);
-  }
-  return result;
-}
-
-}  // namespace impl
 
 template <typename PointSource, typename PointTarget>
 SegmentICP<PointSource, PointTarget>::SegmentICP() {
@@ -74,79 +22,160 @@ SegmentICP<PointSource, PointTarget>::SegmentICP() {
 }
 
 template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setInputTarget(const PointCloudTargetConstPtr& cloud) {
+  Base::setInputTarget(cloud);
+  forgetTarget();
+}
+
+template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setTargetSegments(const Clusters& segments) {
+  target_describer_.setClusters(segments);
+  forgetTarget();
+}
+
+template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setGroundSegmentation(
+    const typename GroundSegmentation<PointSource>::Ptr& source,
+    const typename GroundSegmentation<PointTarget>::Ptr& target) {
+  source_describer_.setGroundSegmentation(source);
+  target_describer_.setGroundSegmentation(target);
+  forgetTarget();
+}
+
+template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setClusterer(const Clusterer<PointSource>& source,
+                                                        const Clusterer<PointTarget>& target) {
+  source_describer_.setClusterer(source);
+  target_describer_.setClusterer(target);
+  forgetTarget();
+}
+
+template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setAlignmentParameters(
+    const core::AlignmentParameters& parameters) {
+  try {
+    core::validate(parameters);
+  } catch (const std::invalid_argument& error) {
+    throw pcl::PCLException(std::string("SegmentICP: ") + error.what());
+  }
+  parameters_ = parameters;
+}
+
+template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setGates(const core::SearchGates& gates) {
+  core::AlignmentParameters parameters = parameters_;
+  parameters.gates = gates;
+  setAlignmentParameters(parameters);
+}
+
+template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::setMinMatches(std::size_t matches) {
-  if (matches < 1) throw pcl::PCLException("SegmentICP: number of matches is 0, must be 1 or more");
-  parameters_.min_matches = matches;
+  core::AlignmentParameters parameters = parameters_;
+  parameters.min_matches = matches;
+  setAlignmentParameters(parameters);
 }
 
 template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::setMinScore(double score) {
-  if (!(score >= 0 && score <= 1))
-    throw pcl::PCLException("SegmentICP: least score is " + std::to_string(score) + ", must be 0 to 1");
-  parameters_.min_score = score;
+  core::AlignmentParameters parameters = parameters_;
+  parameters.min_score = score;
+  setAlignmentParameters(parameters);
 }
 
 template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::setMaxSigma(double sigma) {
-  if (!(sigma > 0 && std::isfinite(sigma)))
-    throw pcl::PCLException("SegmentICP: largest deviation is " + std::to_string(sigma) +
-                            " m, must be a finite number above 0");
-  parameters_.max_sigma = sigma;
+  core::AlignmentParameters parameters = parameters_;
+  parameters.max_sigma = sigma;
+  setAlignmentParameters(parameters);
+}
+
+template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setSegmentParameters(const core::SegmentParameters& parameters) {
+  source_describer_.setSegmentParameters(parameters);
+  target_describer_.setSegmentParameters(parameters);
+  forgetTarget();
 }
 
 template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::setUpDirection(const Eigen::Vector3d& up) {
-  const double length = up.stableNorm();
-  if (!up.allFinite() || !(length > 0))
-    throw pcl::PCLException("SegmentICP: length of the up direction is " + std::to_string(length) +
-                            ", must be a finite number above 0");
-  up_direction_ = up.stableNormalized();
+  source_describer_.setUpDirection(up);
+  target_describer_.setUpDirection(up);
+  forgetTarget();
+}
+
+/// \return why the scans cannot be described; empty if they can
+template <typename PointSource, typename PointTarget>
+std::string SegmentICP<PointSource, PointTarget>::describeScans() {
+  const pcl::IndicesConstPtr source_indices = fake_indices_ ? nullptr : indices_;
+  // Clusters that are not ours cannot be made anew in larger voxels: both scans get the larger ones at once.
+  double voxel_size = 0;
+  if (source_describer_.hasOwnClusters() || target_describer_.hasOwnClusters())
+    voxel_size = std::max(source_describer_.voxelSizeFor(*input_, source_indices.get()),
+                          target_describer_.voxelSizeFor(*target_));
+  source_scan_ = source_describer_.describe(input_, source_indices, voxel_size);
+  if (target_voxel_size_ != voxel_size) {
+    target_scan_ = target_describer_.describe(target_, nullptr, voxel_size);
+    target_voxel_size_ = voxel_size;
+  }
+  if (!source_describer_.getError().empty()) return "the source: " + source_describer_.getError();
+  if (!target_describer_.getError().empty()) return "the target: " + target_describer_.getError();
+  return {};
 }
 
 template <typename PointSource, typename PointTarget>
-void SegmentICP<PointSource, PointTarget>::describe(const Eigen::Matrix3d& level_from_input) {
-  const auto prepared = [&](core::RawPoints raw) {
-    core::UsablePoints usable = core::usablePoints(std::move(raw));
-    usable.points = level_from_input.cast<float>() * usable.points;
-    return usable;
-  };
-  const core::UsablePoints source = prepared(impl::IndexedPoints<PointSource>(*input_, nullptr).rawPoints());
-  const core::UsablePoints target = prepared(impl::IndexedPoints<PointTarget>(*target_, nullptr).rawPoints());
-  core::SegmentParameters parameters = segment_parameters_;
-  if (!parameters.voxel_size)
-    parameters.voxel_size = std::max(core::voxelSizeFor(source.points), core::voxelSizeFor(target.points));
-  const double leaf_size = *parameters.voxel_size;
-  const Clusters source_clusters = impl::clustersOf<PointSource>(
-      input_, indices_, source_segments_, source_ground_, source_clusterer_, leaf_size);
-  const Clusters target_clusters = impl::clustersOf<PointTarget>(
-      target_, nullptr, target_segments_, target_ground_, target_clusterer_, leaf_size);
-  source_scan_ =
-      core::describeScan(source.points, impl::columnsOf(*input_, source, source_clusters), parameters);
-  target_scan_ =
-      core::describeScan(target.points, impl::columnsOf(*target_, target, target_clusters), parameters);
+void SegmentICP<PointSource, PointTarget>::alignFrom(const Eigen::Isometry3d& guess) {
+  const Eigen::Isometry3d level_from_input(Eigen::Quaterniond(source_describer_.levelFromInput()));
+  alignment_ = core::Alignment();
+  alignment_.reference_from_moving = guess;
+  converged_ = false;
+  std::string error = describeScans();
+  try {
+    if (error.empty())
+      alignment_ = core::alignScans(source_scan_, target_scan_,
+                                    level_from_input * guess * level_from_input.inverse(), parameters_);
+  } catch (const std::exception& problem) {
+    error = problem.what();
+  }
+  if (!error.empty()) {
+    alignment_.refusal = error;
+    PCL_ERROR("[pcl_fft_ground::SegmentICP] %s\n", error.c_str());
+    return;
+  }
+  alignment_.reference_from_moving =
+      level_from_input.inverse() * alignment_.reference_from_moving * level_from_input;
+  core::Matrix6d input_from_level = core::Matrix6d::Zero();
+  input_from_level.topLeftCorner<3, 3>() = input_from_level.bottomRightCorner<3, 3>() =
+      level_from_input.linear().transpose();
+  alignment_.covariance = (input_from_level * alignment_.covariance * input_from_level.transpose()).eval();
+  converged_ = alignment_.accepted;
+}
+
+template <typename PointSource, typename PointTarget>
+const core::Alignment& SegmentICP<PointSource, PointTarget>::computeAlignment(
+    const Eigen::Isometry3d& target_from_source) {
+  converged_ = false;
+  if (!this->initCompute()) {
+    alignment_ = core::Alignment();
+    alignment_.reference_from_moving = target_from_source;
+    alignment_.refusal = "there is no source or no target";
+    return alignment_;
+  }
+  alignFrom(target_from_source);
+  transformation_ = final_transformation_ =
+      alignment_.reference_from_moving.matrix().template cast<typename Matrix4::Scalar>();
+  this->deinitCompute();
+  return alignment_;
 }
 
 template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::computeTransformation(PointCloudSource& output,
                                                                  const Matrix4& guess) {
-  const Eigen::Quaterniond level =
-      Eigen::Quaterniond::FromTwoVectors(up_direction_, Eigen::Vector3d::UnitZ());
-  const Eigen::Isometry3d level_from_input(level);
-  describe(level.toRotationMatrix());
   Eigen::Isometry3d target_from_source(guess.template cast<double>());
   target_from_source.linear() =
       Eigen::Quaterniond(target_from_source.linear()).normalized().toRotationMatrix();
-  alignment_ =
-      core::alignScans(source_scan_, target_scan_,
-                       level_from_input * target_from_source * level_from_input.inverse(), parameters_);
-  const Eigen::Isometry3d found =
-      level_from_input.inverse() * alignment_.reference_from_moving * level_from_input;
-  Eigen::Matrix<double, 6, 6> input_from_level = Eigen::Matrix<double, 6, 6>::Zero();
-  input_from_level.topLeftCorner<3, 3>() = input_from_level.bottomRightCorner<3, 3>() =
-      level_from_input.linear().transpose();
-  alignment_.covariance = (input_from_level * alignment_.covariance * input_from_level.transpose()).eval();
-  converged_ = alignment_.accepted;
-  transformation_ = final_transformation_ = found.matrix().template cast<typename Matrix4::Scalar>();
+  alignFrom(target_from_source);
+  transformation_ = final_transformation_ =
+      alignment_.reference_from_moving.matrix().template cast<typename Matrix4::Scalar>();
   pcl::transformPointCloud(*input_, *indices_, output, final_transformation_);
 }
 

@@ -1,4 +1,4 @@
-#include "align/constrained_icp.h"
+#include "align/icp.h"
 
 #include <cmath>
 
@@ -33,33 +33,35 @@ ConstrainedIcp::ConstrainedIcp(const ScanPair& pair)
   }
 }
 
-std::optional<Partners> ConstrainedIcp::partnersOf(const Eigen::Vector3d& point,
-                                                   const std::vector<std::size_t>& segments,
-                                                   double gate) const {
-  std::optional<Partners> best;
+std::optional<Correspondence> ConstrainedIcp::correspondenceOf(const Eigen::Vector3d& point,
+                                                               const std::vector<std::size_t>& segments,
+                                                               double gate) const {
+  std::optional<Correspondence> best;
   double reach = gate;
   for (const std::size_t j : segments) {
     const PlacedSegment& segment = pair_.reference()[j];
     const Neighbour nearest = segment.search->nearest(point.cast<float>(), static_cast<float>(reach));
     if (nearest.index < 0) continue;
     reach = std::sqrt(static_cast<double>(nearest.squared_distance));
-    best = Partners{point, segment.points.col(nearest.index).cast<double>(),
-                    first_place_[j] + static_cast<std::size_t>(nearest.index), weightOf(reach, gate), j};
+    best =
+        Correspondence{point, segment.points.col(nearest.index).cast<double>(),
+                       first_place_[j] + static_cast<std::size_t>(nearest.index), weightOf(reach, gate), j};
   }
   return best;
 }
 
-FindPartners ConstrainedIcp::partnersIn(const std::vector<SegmentMatch>& matches, Eigen::Index one_in) const {
+FindCorrespondences ConstrainedIcp::correspondencesIn(const std::vector<SegmentMatch>& matches,
+                                                      Eigen::Index one_in) const {
   std::vector<std::vector<std::size_t>> segments_of(samples_.size());
   for (const SegmentMatch& match : matches) segments_of[match.moving].push_back(match.reference);
   return [this, segments_of, one_in](const Eigen::Isometry3d& correction, double gate) {
-    std::vector<Partners> found;
+    std::vector<Correspondence> found;
     for (std::size_t i = 0; i < samples_.size(); ++i)
       for (Eigen::Index n = 0; n < samples_[i].cols() && !segments_of[i].empty(); n += one_in) {
         const Eigen::Vector3d point = correction * samples_[i].col(n).cast<double>();
         if (!pair_.referenceSees(point)) continue;
-        const std::optional<Partners> partners = partnersOf(point, segments_of[i], gate);
-        if (partners) found.push_back(*partners);
+        const std::optional<Correspondence> correspondence = correspondenceOf(point, segments_of[i], gate);
+        if (correspondence) found.push_back(*correspondence);
       }
     return found;
   };
@@ -69,16 +71,16 @@ Eigen::Isometry3d ConstrainedIcp::approach(const std::vector<SegmentMatch>& matc
                                            const Eigen::Isometry3d& start, double gate) const {
   const double voxel = pair_.voxelSize();
   return iterateIcp(start, {gate * voxel, FINEST_GATE * voxel, ROUGHLY_SETTLED * voxel},
-                    partnersIn(matches, ROUGHLY), stepToPoints);
+                    correspondencesIn(matches, ROUGHLY), stepToPoints);
 }
 
 IcpResult ConstrainedIcp::refine(const std::vector<SegmentMatch>& matches, const Eigen::Isometry3d& start) {
   const double voxel = pair_.voxelSize();
-  const FindPartners find = partnersIn(matches, 1);
+  const FindCorrespondences find = correspondencesIn(matches, 1);
   const Eigen::Isometry3d correction =
       iterateIcp(start, {PLANE_GATE * voxel, FINEST_GATE * voxel, SETTLED * voxel}, find,
-                 [this](const std::vector<Partners>& partners, const Eigen::Vector3d& centre) {
-                   return stepToPlanes(partners, centre, normals_);
+                 [this](const std::vector<Correspondence>& correspondences, const Eigen::Vector3d& centre) {
+                   return stepToPlanes(correspondences, centre, normals_);
                  });
   IcpResult result = summariseIcp(correction, find(correction, FINEST_GATE * voxel), normals_);
   result.least_deviation = LEAST_DEVIATION * voxel;

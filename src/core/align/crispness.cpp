@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "pcl_fft_ground/core/scan/frame.h"
 #include "segments/voxel_set.h"
 
 namespace pcl_fft_ground::core {
 namespace {
 
 constexpr double SQUARE = 0.1;  // of the overlap [m]
-
-Points placed(const PointsView& points, const Eigen::Isometry3d& transform) {
-  return (transform * points.cast<double>()).cast<float>();
-}
 
 void addVoxels(const PointsView& points, double voxel_size, VoxelSet& voxels) {
   for (Eigen::Index n = 0; n < points.cols(); ++n) voxels.findOrInsert(voxelOf(points.col(n), voxel_size));
@@ -55,7 +52,7 @@ std::size_t occupiedTogether(const PointsView& a, const PointsView& b, double vo
 
 std::size_t occupiedVoxels(const PointsView& moving, const PointsView& reference,
                            const Eigen::Isometry3d& reference_from_moving, double voxel_size) {
-  return occupiedTogether(reference, placed(moving, reference_from_moving), voxel_size);
+  return occupiedTogether(reference, transformed(moving, reference_from_moving), voxel_size);
 }
 
 double crispnessChange(std::size_t before, std::size_t after) {
@@ -65,7 +62,7 @@ double crispnessChange(std::size_t before, std::size_t after) {
 
 std::optional<double> overlapCrispness(const PointsView& moving, const PointsView& reference,
                                        const Eigen::Isometry3d& reference_from_moving, double voxel_size) {
-  const Points there = placed(moving, reference_from_moving);
+  const Points there = transformed(moving, reference_from_moving);
   const Points a = pointsOn(squaresOf(there), reference);
   const Points b = pointsOn(squaresOf(reference), there);
   const std::size_t apart = occupied(a, voxel_size) + occupied(b, voxel_size);

@@ -7,11 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "align/alignment_gates.h"
-#include "align/alignment_score.h"
-#include "align/dense_icp.h"
 #include "align/icp.h"
-#include "align/plane_icp.h"
+#include "align/verdict.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -22,7 +19,7 @@ constexpr double MIDDLE_GATE = 2.5;        // narrowed only when this one has se
 constexpr double FINEST_GATE = 1.5;        // [voxels]
 constexpr double WHOLE_SCAN_GATE = 25;     // where all points take part [voxels]
 constexpr double SETTLED = 0.0005;         // [voxels]
-constexpr std::size_t LEAST_POINTS = 200;  // partners that a result has to rest on
+constexpr std::size_t LEAST_POINTS = 200;  // correspondences that a result has to rest on
 constexpr double LARGEST_RESIDUAL = 0.5;   // root of the mean squared distance to the planes [voxels]
 constexpr double LEAST_RESIDUAL = 0.1;     // less says nothing about the contrast [voxels]
 constexpr double LARGEST_DISTANCE = 1.5;   // from a plane that counts; more counts the same [voxels]
@@ -40,19 +37,21 @@ class DenseIcp {
   DenseIcp(const ScanPair& pair, DensePoints which)
       : pair_(pair),
         which_(which),
-        sample_(evenSample(transformed(pair.initialGuess(), pair.movingScan().surface), SAMPLE)),
+        sample_(evenSample(transformed(pair.movingScan().surface, pair.initialGuess()), SAMPLE)),
         search_(pair.parameters().neighbours(surface(), pair.voxelSize())),
         normals_(surface(), pair.voxelSize(), pair.parameters().neighbours,
                  static_cast<std::size_t>(surface().cols())) {}
 
-  /// \param gates largest distances of partners [voxels], falling: what is found with one starts the next
+  /// \param gates largest distances of correspondences [voxels], falling: what is found with one starts the
+  /// next
   IcpResult run(const std::vector<double>& gates) {
     const double voxel = pair_.voxelSize();
     const auto find = [this](const Eigen::Isometry3d& correction, double gate) {
-      return findPartners(correction, gate);
+      return findCorrespondences(correction, gate);
     };
-    const auto step = [this](const std::vector<Partners>& partners, const Eigen::Vector3d& centre) {
-      return stepToPlanes(partners, centre, normals_);
+    const auto step = [this](const std::vector<Correspondence>& correspondences,
+                             const Eigen::Vector3d& centre) {
+      return stepToPlanes(correspondences, centre, normals_);
     };
     Eigen::Isometry3d correction = Eigen::Isometry3d::Identity();
     for (std::size_t n = 0; n + 1 < gates.size(); ++n)
@@ -61,8 +60,8 @@ class DenseIcp {
     return summariseIcp(correction, find(correction, gates.back() * voxel), normals_);
   }
 
-  std::vector<Partners> findPartners(const Eigen::Isometry3d& correction, double gate) const {
-    std::vector<Partners> found;
+  std::vector<Correspondence> findCorrespondences(const Eigen::Isometry3d& correction, double gate) const {
+    std::vector<Correspondence> found;
     for (Eigen::Index n = 0; n < sample_.cols(); ++n) {
       const Eigen::Vector3d point = correction * sample_.col(n).cast<double>();
       if (which_ == DensePoints::OVERLAP && !pair_.referenceSees(point)) continue;
@@ -79,14 +78,15 @@ class DenseIcp {
   /// more counts the same [voxels]
   double residualAfter(const Eigen::Vector3d& shift, const Eigen::Isometry3d& correction, double largest) {
     const Eigen::Isometry3d shifted = Eigen::Translation3d(shift) * correction;
-    const std::vector<Partners> partners = findPartners(shifted, FIRST_GATE * pair_.voxelSize());
+    const std::vector<Correspondence> correspondences =
+        findCorrespondences(shifted, FIRST_GATE * pair_.voxelSize());
     const double most = std::pow(largest * pair_.voxelSize(), 2);
     double sum = 0;
-    for (const Partners& p : partners) {
+    for (const Correspondence& p : correspondences) {
       const double distance = normals_.at(p.place, p.reference).dot(p.moving - p.reference);
       sum += std::min(distance * distance, most);
     }
-    return partners.empty() ? 0 : sum / static_cast<double>(partners.size());
+    return correspondences.empty() ? 0 : sum / static_cast<double>(correspondences.size());
   }
 
  private:
@@ -119,7 +119,7 @@ std::string reasonAgainstFit(const ScanPair& pair, DenseIcp& icp, const Eigen::I
 std::string reasonAgainstMeeting(const ScanPair& pair, const DenseIcp& icp, const IcpResult& result,
                                  const Agreement& agreement, double least_score) {
   const double gate = FINEST_GATE * pair.voxelSize();
-  if (icp.findPartners(result.correction, gate).size() < LEAST_POINTS) return "hardly any overlap";
+  if (icp.findCorrespondences(result.correction, gate).size() < LEAST_POINTS) return "hardly any overlap";
   const std::string reason = reasonAgainstMotion(pair, result);
   if (!reason.empty()) return reason;
   if (agreement.points >= TELLING_OBJECTS && agreement.score < least_score) return "the objects do not agree";

@@ -1,4 +1,4 @@
-#include "align/local_alignment.h"
+#include "align/segment_matching.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,15 +17,16 @@ constexpr double SETTLED = 0.05;     // a smaller step ends the iteration [voxel
 constexpr Eigen::Index ROUGHLY = 4;  // one in so many points tells whether two segments are worth all of them
 constexpr double HOPELESS = 1.5;     // of the largest distance: by one in four points unlike
 
-/// A point of the moving segment, corrected by the current transform, and its partner in the reference.
-struct Partners {
+/// A point of the moving segment, corrected by the current transform, and its correspondence in the
+/// reference.
+struct Correspondence {
   Eigen::Vector3d moving;
   Eigen::Vector3d reference;
   double distance;
 };
 
-struct Correspondences {
-  std::vector<Partners> partners;
+struct CorrespondenceSet {
+  std::vector<Correspondence> correspondences;
   double shape_distance = 0;
   double covered = 0;
 };
@@ -34,74 +35,76 @@ double shareOf(std::size_t part, Eigen::Index whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-double meanDistance(const std::vector<Partners>& partners, std::size_t first, std::size_t last) {
+double meanDistance(const std::vector<Correspondence>& correspondences, std::size_t first, std::size_t last) {
   double sum = 0;
-  for (std::size_t n = first; n < last; ++n) sum += partners[n].distance;
+  for (std::size_t n = first; n < last; ++n) sum += correspondences[n].distance;
   return sum / static_cast<double>(last - first);
 }
 
-/// Partners in the reference of one in `step` of the moving segment's points, then the other way round.
-Correspondences findPartners(const ScanPair& pair, const PlacedSegment& moving,
-                             const PlacedSegment& reference, const Eigen::Isometry3d& correction,
-                             Eigen::Index step) {
+/// Correspondences in the reference of one in `step` of the moving segment's points, then the other way
+/// round.
+CorrespondenceSet findCorrespondences(const ScanPair& pair, const PlacedSegment& moving,
+                                      const PlacedSegment& reference, const Eigen::Isometry3d& correction,
+                                      Eigen::Index step) {
   constexpr float ANYWHERE = 1e6F;
-  Correspondences result;
+  CorrespondenceSet result;
   for (Eigen::Index n = 0; n < moving.sample.cols(); n += step) {
     const Eigen::Vector3d point = correction * moving.sample.col(n).cast<double>();
     if (!pair.referenceSees(point)) continue;
     const Neighbour nearest = reference.search->nearest(point.cast<float>(), ANYWHERE);
-    result.partners.push_back({point, reference.points.col(nearest.index).cast<double>(),
-                               std::sqrt(static_cast<double>(nearest.squared_distance))});
+    result.correspondences.push_back({point, reference.points.col(nearest.index).cast<double>(),
+                                      std::sqrt(static_cast<double>(nearest.squared_distance))});
   }
-  const std::size_t forward = result.partners.size();
+  const std::size_t forward = result.correspondences.size();
   const Eigen::Isometry3d inverse = correction.inverse();
   for (Eigen::Index n = 0; n < reference.sample.cols(); n += step) {
     const Eigen::Vector3d point = reference.sample.col(n).cast<double>();
     const Eigen::Vector3d uncorrected = inverse * point;
     if (!pair.movingSees(uncorrected)) continue;
     const Neighbour nearest = moving.search->nearest(uncorrected.cast<float>(), ANYWHERE);
-    result.partners.push_back({correction * moving.points.col(nearest.index).cast<double>(), point,
-                               std::sqrt(static_cast<double>(nearest.squared_distance))});
+    result.correspondences.push_back({correction * moving.points.col(nearest.index).cast<double>(), point,
+                                      std::sqrt(static_cast<double>(nearest.squared_distance))});
   }
-  const std::size_t backward = result.partners.size() - forward;
+  const std::size_t backward = result.correspondences.size() - forward;
   result.covered = std::min(shareOf(forward, (moving.sample.cols() + step - 1) / step),
                             shareOf(backward, (reference.sample.cols() + step - 1) / step));
   if (forward > 0 && backward > 0)
-    result.shape_distance = 0.5 * (meanDistance(result.partners, 0, forward) +
-                                   meanDistance(result.partners, forward, result.partners.size()));
+    result.shape_distance =
+        0.5 * (meanDistance(result.correspondences, 0, forward) +
+               meanDistance(result.correspondences, forward, result.correspondences.size()));
   return result;
 }
 
-double medianDistance(const std::vector<Partners>& partners) {
+double medianDistance(const std::vector<Correspondence>& correspondences) {
   std::vector<double> distances;
-  distances.reserve(partners.size());
-  for (const Partners& p : partners) distances.push_back(p.distance);
+  distances.reserve(correspondences.size());
+  for (const Correspondence& p : correspondences) distances.push_back(p.distance);
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   return *middle;
 }
 
-/// The robust step that brings the moving partners nearer, fitted about the given place.
-Eigen::Isometry3d stepOf(const std::vector<Partners>& partners, const Eigen::Vector3d& about,
+/// The robust step that brings the moving correspondences nearer, fitted about the given place.
+Eigen::Isometry3d stepOf(const std::vector<Correspondence>& correspondences, const Eigen::Vector3d& about,
                          double voxel_size) {
-  const double scale = std::max(2 * medianDistance(partners), LEAST_SCALE * voxel_size);
+  const double scale = std::max(2 * medianDistance(correspondences), LEAST_SCALE * voxel_size);
   YawFit fit;
-  for (const Partners& p : partners) {
+  for (const Correspondence& p : correspondences) {
     const double ratio = p.distance / scale;
     fit.add(p.moving - about, p.reference - about, 1 / (1 + ratio * ratio));
   }
   return Eigen::Translation3d(about) * fit.solve() * Eigen::Translation3d(-about);
 }
 
-/// Moves the segment on to its partners until it stays or too little of it is covered.
+/// Moves the segment on to its correspondences until it stays or too little of it is covered.
 LocalAlignment iterate(const ScanPair& pair, const PlacedSegment& moving, const PlacedSegment& reference,
                        const Eigen::Isometry3d& start, Eigen::Index one_in) {
   Eigen::Isometry3d correction = start;
-  Correspondences found = findPartners(pair, moving, reference, correction, one_in);
+  CorrespondenceSet found = findCorrespondences(pair, moving, reference, correction, one_in);
   for (int iteration = 0; iteration < MAX_ITERATIONS && found.covered >= LEAST_COVERED; ++iteration) {
-    const Eigen::Isometry3d step = stepOf(found.partners, reference.centroid, pair.voxelSize());
+    const Eigen::Isometry3d step = stepOf(found.correspondences, reference.centroid, pair.voxelSize());
     correction = step * correction;
-    found = findPartners(pair, moving, reference, correction, one_in);
+    found = findCorrespondences(pair, moving, reference, correction, one_in);
     const double moved = (step * reference.centroid - reference.centroid).norm() +
                          std::abs(yawOf(step)) * reference.extents.norm();
     if (moved < SETTLED * pair.voxelSize()) break;

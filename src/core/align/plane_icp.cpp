@@ -1,12 +1,10 @@
-#include "align/plane_icp.h"
+#include "align/icp.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
-
-#include "align/patch_pairs.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -16,7 +14,7 @@ constexpr Eigen::Index SAMPLE = 8000;     // patches of the moving scan that tak
 constexpr double RADIUS = 2;              // of a patch: some 12 points [voxels]
 constexpr double FLAT = 0.2;              // largest ratio of a flat patch's thickness to its breadth
 constexpr double SAME_NORMAL = 0.985;     // least cosine between the normals of the same surface: 10 degrees
-constexpr double REACH = 1.5;             // how far a patch looks for its partner [voxels]
+constexpr double REACH = 1.5;             // how far a patch looks for its counterpart [voxels]
 constexpr double GATE = 0.5;              // largest distance between the planes of the same surface [voxels]
 constexpr double SETTLED = 0.0005;        // a smaller step is the last [voxels]
 constexpr double BLOCKS = 6;              // parts of the scene along its longer side, for the jackknife
@@ -51,11 +49,56 @@ std::vector<std::size_t> blocksOf(const std::vector<SurfacePatch>& patches, doub
   return blocks;
 }
 
+/// Two patches of the same surface, one of the moving scan and one of the reference.
+struct PatchPair {
+  Eigen::Vector3d from;    ///< centre of the moving patch after the current correction [m]
+  Eigen::Vector3d to;      ///< centre of its counterpart [m]
+  Eigen::Vector3d normal;  ///< of unit length, amid the two
+  double weight;           ///< in (0, 1]
+  std::size_t block;       ///< number of the part of the scene
+};
+
+/// Mean place of the pairs.
+Eigen::Vector3d centreOf(const std::vector<PatchPair>& pairs) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const PatchPair& p : pairs) sum += p.to;
+  return sum / static_cast<double>(pairs.size());
+}
+
+/// The equations that bring the patches into one plane, pair by pair.
+MotionFit fitOf(const std::vector<PatchPair>& pairs, const Eigen::Vector3d& centre) {
+  MotionFit fit(centre);
+  for (const PatchPair& p : pairs) fit.addToPlane(p.from, p.to, p.normal, p.weight);
+  return fit;
+}
+
+/// How well the pairs hold the correction.
+IcpResult summarise(const std::vector<PatchPair>& pairs, const Eigen::Isometry3d& correction) {
+  IcpResult result;
+  result.correction = correction;
+  if (pairs.empty()) return result;
+  result.centre = centreOf(pairs);
+  std::vector<MotionFit> blocks;
+  double sum = 0;
+  double weights = 0;
+  for (const PatchPair& p : pairs) {
+    blocks.resize(std::max(blocks.size(), p.block + 1), MotionFit(result.centre));
+    blocks[p.block].addToPlane(p.from, p.to, p.normal, p.weight);
+    sum += p.weight * std::pow(p.normal.dot(p.from - p.to), 2);
+    weights += p.weight;
+  }
+  result.information = fitOf(pairs, result.centre).information();
+  result.variance = sum / weights;
+  result.spread = jackknifeCovariance(blocks);
+  return result;
+}
+
+/// Pairs patches and moves them into one plane, in turns.
 class PlaneIcp {
  public:
   explicit PlaneIcp(const ScanPair& pair)
       : pair_(pair),
-        moving_surface_(transformed(pair.initialGuess(), pair.movingScan().surface)),
+        moving_surface_(transformed(pair.movingScan().surface, pair.initialGuess())),
         moving_search_(pair.parameters().neighbours(moving_surface_, pair.voxelSize())),
         search_(pair.parameters().neighbours(surface(), pair.voxelSize())),
         reference_fitter_(surface(), *search_, RADIUS * pair.voxelSize()),
@@ -88,7 +131,7 @@ class PlaneIcp {
  private:
   const Points& surface() const { return pair_.referenceScan().surface; }
 
-  /// The partner's patch, fitted when it is first asked for.
+  /// The counterpart's patch, fitted when it is first asked for.
   const SurfacePatch& referencePatch(Eigen::Index n) {
     std::optional<SurfacePatch>& patch = reference_[static_cast<std::size_t>(n)];
     if (!patch) patch = reference_fitter_.around(surface().col(n));
@@ -101,17 +144,17 @@ class PlaneIcp {
     const auto reach = static_cast<float>(REACH * pair_.voxelSize());
     const Neighbour nearest = search_->nearest(from.cast<float>(), reach);
     if (nearest.index < 0) return std::nullopt;
-    const SurfacePatch& partner = referencePatch(nearest.index);
-    if (!isFlat(partner)) return std::nullopt;
+    const SurfacePatch& counterpart = referencePatch(nearest.index);
+    if (!isFlat(counterpart)) return std::nullopt;
     const Eigen::Vector3d turned = correction.linear() * moving_[n].normal;
-    const double cosine = turned.dot(partner.normal);
+    const double cosine = turned.dot(counterpart.normal);
     if (std::abs(cosine) < SAME_NORMAL) return std::nullopt;
-    const Eigen::Vector3d normal = (turned + std::copysign(1.0, cosine) * partner.normal).normalized();
-    const double distance = std::abs(normal.dot(from - partner.centre));
+    const Eigen::Vector3d normal = (turned + std::copysign(1.0, cosine) * counterpart.normal).normalized();
+    const double distance = std::abs(normal.dot(from - counterpart.centre));
     const double gate = GATE * pair_.voxelSize();
     if (distance > gate) return std::nullopt;
-    const double trust = typical_ / (typical_ + moving_[n].roughness + partner.roughness);
-    return PatchPair{from, partner.centre, normal, trust * weightOf(distance, gate), block_[n]};
+    const double trust = typical_ / (typical_ + moving_[n].roughness + counterpart.roughness);
+    return PatchPair{from, counterpart.centre, normal, trust * weightOf(distance, gate), block_[n]};
   }
 
   std::vector<PatchPair> findPairs(const Eigen::Isometry3d& correction) {

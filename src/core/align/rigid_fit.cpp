@@ -3,17 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+
+#include "align/rigid_motion.h"
 
 namespace pcl_fft_ground::core {
-namespace {
-
-Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
-
-}  // namespace
 
 Eigen::Isometry3d YawFit::solve() const {
   Eigen::Isometry3d to_from = Eigen::Isometry3d::Identity();
@@ -75,6 +69,27 @@ double yawOf(const Eigen::Isometry3d& transform) {
 
 double tiltOf(const Eigen::Isometry3d& transform) {
   return std::acos(std::clamp(transform(2, 2), -1.0, 1.0));
+}
+
+Matrix6d jackknifeCovariance(const std::vector<MotionFit>& parts) {
+  MotionFit all(Eigen::Vector3d::Zero());
+  std::size_t count = 0;
+  for (const MotionFit& part : parts) {
+    if (part.information().isZero(0)) continue;
+    all += part;
+    ++count;
+  }
+  if (count < 2) return Matrix6d::Zero();
+  const Vector6d motion = all.motion();
+  Matrix6d sum = Matrix6d::Zero();
+  for (const MotionFit& part : parts) {
+    if (part.information().isZero(0)) continue;
+    MotionFit others = all;
+    others -= part;
+    const Vector6d difference = others.motion() - motion;
+    sum += difference * difference.transpose();
+  }
+  return static_cast<double>(count - 1) / static_cast<double>(count) * sum;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -15,7 +15,7 @@ constexpr double SEEN_WITHIN = 1.5;   // depth of a place in the coverage from w
 
 PlacedSegment placed(const Segment& segment, const Eigen::Isometry3d& transform) {
   PlacedSegment result;
-  result.points = transformed(transform, segment.points);
+  result.points = transformed(segment.points, transform);
   result.sample = evenSample(result.points, SAMPLE);
   result.centroid = transform * segment.centroid;
   result.extents = segment.extents;
@@ -42,24 +42,28 @@ std::optional<ScanSegments> coarsenedTo(const ScanSegments& other, const ScanSeg
 }
 
 const Eigen::Isometry3d& checked(const Eigen::Isometry3d& guess, const AlignmentParameters& parameters) {
-  const auto positive = [](const char* name, double value) {
-    require(std::isfinite(value) && value > 0, name, value, "a finite number above 0");
-  };
-  positive("max_shift", parameters.gates.max_shift);
-  positive("max_rise", parameters.gates.max_rise);
-  positive("max_tilt", parameters.gates.max_tilt);
-  positive("max_sigma", parameters.max_sigma);
-  require(parameters.gates.max_turn > 0 && parameters.gates.max_turn <= 180, "max_turn",
-          parameters.gates.max_turn, "above 0 to 180 degrees");
-  require(parameters.gates.hypotheses >= 1, "hypotheses", parameters.gates.hypotheses, "1 or more");
-  require(parameters.min_matches >= 1, "min_matches", static_cast<double>(parameters.min_matches),
-          "1 or more");
-  requireWithin("min_score", parameters.min_score, 0, 1, "0 to 1");
+  validate(parameters);
   if (!guess.matrix().allFinite()) throw std::invalid_argument("the initial guess is not finite");
   return guess;
 }
 
 }  // namespace
+
+void validate(const AlignmentParameters& parameters) {
+  const SearchGates& gates = parameters.gates;
+  const auto positive = [](const char* name, double value) {
+    require(std::isfinite(value) && value > 0, name, value, "a finite number above 0");
+  };
+  positive("max_shift", gates.max_shift);
+  positive("max_rise", gates.max_rise);
+  positive("max_tilt", gates.max_tilt);
+  positive("max_sigma", parameters.max_sigma);
+  require(gates.max_turn > 0 && gates.max_turn <= 180, "max_turn", gates.max_turn, "above 0 to 180 degrees");
+  require(gates.hypotheses >= 1, "hypotheses", gates.hypotheses, "1 or more");
+  require(parameters.min_matches >= 1, "min_matches", static_cast<double>(parameters.min_matches),
+          "1 or more");
+  requireWithin("min_score", parameters.min_score, 0, 1, "0 to 1");
+}
 
 ScanPair::ScanPair(const ScanSegments& moving, const ScanSegments& reference,
                    const Eigen::Isometry3d& initial_guess, const AlignmentParameters& parameters)
@@ -79,10 +83,6 @@ Points evenSample(const PointsView& points, Eigen::Index count) {
   Points sample(3, count);
   for (Eigen::Index n = 0; n < count; ++n) sample.col(n) = points.col(n * points.cols() / count);
   return sample;
-}
-
-Points transformed(const Eigen::Isometry3d& transform, const PointsView& points) {
-  return (transform * points.cast<double>()).cast<float>();
 }
 
 }  // namespace pcl_fft_ground::core

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pcl_fft_ground/core/align/segment_alignment.h"
+#include "pcl_fft_ground/core/scan/frame.h"
 
 namespace pcl_fft_ground::core {
 
@@ -64,8 +65,5 @@ class ScanPair {
 
 /// At most `count` of the points, evenly taken.
 Points evenSample(const PointsView& points, Eigen::Index count);
-
-/// Points after a transform.
-Points transformed(const Eigen::Isometry3d& transform, const PointsView& points);
 
 }  // namespace pcl_fft_ground::core

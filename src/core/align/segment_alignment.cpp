@@ -4,12 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "align/alignment_gates.h"
-#include "align/alignment_score.h"
-#include "align/constrained_icp.h"
-#include "align/dense_icp.h"
-#include "align/segment_association.h"
+#include "align/icp.h"
 #include "align/segment_matching.h"
+#include "align/verdict.h"
 
 namespace pcl_fft_ground::core {
 namespace {

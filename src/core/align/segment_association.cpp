@@ -1,4 +1,4 @@
-#include "align/segment_association.h"
+#include "align/segment_matching.h"
 
 #include <limits>
 
@@ -16,7 +16,7 @@ Eigen::AlignedBox3f boxAround(const PlacedSegment& segment, float margin) {
 /// The points of a segment that the other scan has seen, where they come to lie.
 template <typename Sees>
 Points seenPoints(const PlacedSegment& segment, const Eigen::Isometry3d& transform, const Sees& sees) {
-  Points seen = transformed(transform, segment.sample);
+  Points seen = transformed(segment.sample, transform);
   Eigen::Index count = 0;
   for (Eigen::Index n = 0; n < seen.cols(); ++n)
     if (sees(seen.col(n).template cast<double>())) seen.col(count++) = seen.col(n);

@@ -5,8 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "align/heaviest_clique.h"
-#include "align/local_alignment.h"
 #include "pcl_fft_ground/core/align/rigid_fit.h"
 
 namespace pcl_fft_ground::core {

@@ -2,11 +2,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace pcl_fft_ground::core {
 namespace {
 
 constexpr std::size_t LEAST_POINTS = 5;
+constexpr double NORMAL_RADIUS = 2;  // of the neighbourhood of a normal: some 12 points [spacings]
 
 }  // namespace
 
@@ -33,6 +36,18 @@ SurfacePatch PatchFitter::around(const Eigen::Vector3f& place) {
   patch.roughness = scale * std::max(0.0, solver.eigenvalues()[0]);
   patch.breadth = scale * std::max(0.0, solver.eigenvalues()[1]);
   return patch;
+}
+
+SurfaceNormals::SurfaceNormals(const Points& surface, double spacing,
+                               const NearestNeighboursFactory& neighbours, std::size_t places)
+    : search_(neighbours(surface, spacing)),
+      patches_(surface, *search_, NORMAL_RADIUS * spacing),
+      normals_(places, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())) {}
+
+const Eigen::Vector3d& SurfaceNormals::at(std::size_t number, const Eigen::Vector3d& point) {
+  Eigen::Vector3d& normal = normals_[number];
+  if (std::isnan(normal.x())) normal = patches_.around(point.cast<float>()).normal;
+  return normal;
 }
 
 }  // namespace pcl_fft_ground::core

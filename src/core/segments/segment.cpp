@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "align/voxel_means.h"
 #include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "scan/parameter_check.h"
@@ -18,11 +17,19 @@ namespace {
 constexpr double COVERAGE_CELL = 2.5;  // side of a cell of the coverage [voxels]
 constexpr double BORDER = 3;  // a segment that comes nearer to the border may go on beyond it [voxels]
 
-void validate(const SegmentParameters& parameters) {
-  const double voxel_size = parameters.voxel_size.value_or(1);
-  require(std::isfinite(voxel_size) && voxel_size > 0, "voxel_size", voxel_size,
-          "a number of metres above 0");
-  require(parameters.min_extent >= 0, "min_extent", parameters.min_extent, "0 m or more");
+/// The mean of the points in each occupied voxel, in the order of the voxels' first points.
+Points voxelMeans(const PointsView& points, double voxel_size) {
+  VoxelSet occupied;
+  std::vector<Eigen::Vector4d> sums;  // x, y, z and the number of points
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    const auto voxel = static_cast<std::size_t>(occupied.findOrInsert(voxelOf(points.col(n), voxel_size)));
+    if (voxel == sums.size()) sums.emplace_back(Eigen::Vector4d::Zero());
+    sums[voxel] += points.col(n).cast<double>().homogeneous();
+  }
+  Points means(3, static_cast<Eigen::Index>(sums.size()));
+  for (std::size_t voxel = 0; voxel < sums.size(); ++voxel)
+    means.col(static_cast<Eigen::Index>(voxel)) = sums[voxel].hnormalized().cast<float>();
+  return means;
 }
 
 Points gathered(const PointsView& points, const std::vector<Eigen::Index>& columns) {
@@ -132,6 +139,13 @@ std::size_t occupiedSquares(const PointsView& points, double side) {
 }
 
 }  // namespace
+
+void validate(const SegmentParameters& parameters) {
+  const double voxel_size = parameters.voxel_size.value_or(1);
+  require(std::isfinite(voxel_size) && voxel_size > 0, "voxel_size", voxel_size,
+          "a number of metres above 0");
+  require(parameters.min_extent >= 0, "min_extent", parameters.min_extent, "0 m or more");
+}
 
 double voxelSizeFor(const PointsView& points) {
   constexpr double FINEST = 0.02;

@@ -30,25 +30,6 @@ bool isListed(const std::vector<SubmapPair>& pairs, std::size_t a, std::size_t b
   });
 }
 
-/// Centre of a covered cell.
-Eigen::Vector3d cellCentre(const GridGeometry& cells, Eigen::Index row, Eigen::Index col) {
-  return {cells.origin.x() + (static_cast<double>(row) + 0.5) * cells.cell_size,
-          cells.origin.y() + (static_cast<double>(col) + 0.5) * cells.cell_size, 0.0};
-}
-
-/// Area of the moving scan that the reference covers, too [m^2].
-double sharedArea(const ScanCoverage& reference, const ScanCoverage& moving,
-                  const Eigen::Isometry3d& reference_from_moving) {
-  double cells = 0.0;
-  for (Eigen::Index j = 0; j < moving.depth.cols(); ++j) {
-    for (Eigen::Index i = 0; i < moving.depth.rows(); ++i) {
-      if (moving.depth(i, j) <= 0.0F) continue;
-      if (reference.covers(reference_from_moving * cellCentre(moving.geometry, i, j), 0.0)) cells += 1.0;
-    }
-  }
-  return cells * moving.geometry.cell_size * moving.geometry.cell_size;
-}
-
 }  // namespace
 
 std::vector<SubmapPair> chainPairs(const std::vector<Eigen::Vector3d>& centroids) {
@@ -66,13 +47,6 @@ std::vector<SubmapPair> chainPairs(const std::vector<Eigen::Vector3d>& centroids
   const auto last = nearestTo(current, centroids, [&](std::size_t i) { return i != predecessor; });
   if (last) pairs.push_back({current, *last});
   return pairs;
-}
-
-double overlapShare(const ScanCoverage& reference, const ScanCoverage& moving,
-                    const Eigen::Isometry3d& reference_from_moving) {
-  const double smaller = std::min(reference.area(), moving.area());
-  if (smaller <= 0.0) return 0.0;
-  return std::min(1.0, sharedArea(reference, moving, reference_from_moving) / smaller);
 }
 
 std::vector<SubmapPair> otherOverlappingPairs(const std::vector<ScanCoverage>& coverages,

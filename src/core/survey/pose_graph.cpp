@@ -10,11 +10,94 @@
 #include <Eigen/SparseCore>
 
 #include "align/rigid_motion.h"
-#include "survey/pose_graph_equations.h"
 
 namespace pcl_fft_ground::core {
 
 namespace {
+
+Matrix6d informationOf(const MotionCovariance& covariance) {
+  return covariance.llt().solve(Matrix6d::Identity());
+}
+
+/// The error of an edge: the motion in the reference's frame by which the poses differ from what it says.
+Vector6d errorOf(const PoseGraphEdge& edge, const std::vector<Eigen::Isometry3d>& poses) {
+  return twistOf(poses[edge.reference].inverse() * poses[edge.moving] * edge.reference_from_moving.inverse());
+}
+
+Eigen::Index unknownsOf(std::size_t node) {
+  return static_cast<Eigen::Index>(6 * node);
+}
+
+/// By how many standard deviations the poses contradict an edge, squared.
+double squaredDeviation(const PoseGraphEdge& edge, const std::vector<Eigen::Isometry3d>& poses) {
+  const Vector6d error = errorOf(edge, poses);
+  return error.dot(informationOf(edge.covariance) * error);
+}
+
+/// The normal equations of a pose graph, linearised at given poses. Unknowns: a twist for each node, applied
+/// in the node's own frame.
+class PoseGraphEquations {
+ public:
+  PoseGraphEquations(const std::vector<Eigen::Isometry3d>& poses, const std::vector<PoseGraphEdge>& edges,
+                     const std::vector<double>& weights, const std::vector<PosePrior>& priors);
+
+  Eigen::SparseMatrix<double> matrix() const;
+  const Eigen::VectorXd& rightHandSide() const { return right_; }
+
+ private:
+  void add(const PoseGraphEdge& edge, double weight, const std::vector<Eigen::Isometry3d>& poses);
+  void add(const PosePrior& prior, const std::vector<Eigen::Isometry3d>& poses);
+  void addBlock(std::size_t row_node, std::size_t column_node, const MotionCovariance& block);
+
+  std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::VectorXd right_;
+};
+
+PoseGraphEquations::PoseGraphEquations(const std::vector<Eigen::Isometry3d>& poses,
+                                       const std::vector<PoseGraphEdge>& edges,
+                                       const std::vector<double>& weights,
+                                       const std::vector<PosePrior>& priors)
+    : right_(Eigen::VectorXd::Zero(unknownsOf(poses.size()))) {
+  for (std::size_t i = 0; i < edges.size(); ++i) add(edges[i], weights[i], poses);
+  for (const PosePrior& prior : priors) add(prior, poses);
+}
+
+Eigen::SparseMatrix<double> PoseGraphEquations::matrix() const {
+  Eigen::SparseMatrix<double> result(right_.size(), right_.size());
+  result.setFromTriplets(entries_.begin(), entries_.end());
+  return result;
+}
+
+void PoseGraphEquations::add(const PoseGraphEdge& edge, double weight,
+                             const std::vector<Eigen::Isometry3d>& poses) {
+  const Vector6d error = errorOf(edge, poses);
+  const Matrix6d by_reference = -rightInverseJacobian(-error);
+  const Matrix6d by_moving = rightInverseJacobian(error) * adjoint(edge.reference_from_moving);
+  const Matrix6d information = weight * informationOf(edge.covariance);
+  addBlock(edge.reference, edge.reference, by_reference.transpose() * information * by_reference);
+  addBlock(edge.reference, edge.moving, by_reference.transpose() * information * by_moving);
+  addBlock(edge.moving, edge.reference, by_moving.transpose() * information * by_reference);
+  addBlock(edge.moving, edge.moving, by_moving.transpose() * information * by_moving);
+  right_.segment<6>(unknownsOf(edge.reference)) -= by_reference.transpose() * information * error;
+  right_.segment<6>(unknownsOf(edge.moving)) -= by_moving.transpose() * information * error;
+}
+
+void PoseGraphEquations::add(const PosePrior& prior, const std::vector<Eigen::Isometry3d>& poses) {
+  const Vector6d error = twistOf(prior.world_from_node.inverse() * poses[prior.node]);
+  const Matrix6d by_node = rightInverseJacobian(error);
+  const Matrix6d information = informationOf(prior.covariance);
+  addBlock(prior.node, prior.node, by_node.transpose() * information * by_node);
+  right_.segment<6>(unknownsOf(prior.node)) -= by_node.transpose() * information * error;
+}
+
+void PoseGraphEquations::addBlock(std::size_t row_node, std::size_t column_node,
+                                  const MotionCovariance& block) {
+  for (Eigen::Index j = 0; j < 6; ++j) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      entries_.emplace_back(unknownsOf(row_node) + i, unknownsOf(column_node) + j, block(i, j));
+    }
+  }
+}
 
 void requireNode(std::size_t node, std::size_t count) {
   if (node >= count) throw std::invalid_argument("solvePoseGraph: there is no node " + std::to_string(node));
@@ -87,8 +170,8 @@ PoseGraphSolution solvePoseGraph(const std::vector<Eigen::Isometry3d>& start,
                                  const std::vector<PoseGraphEdge>& edges,
                                  const std::vector<PosePrior>& priors,
                                  const PoseGraphParameters& parameters) {
-  constexpr double kTightening = 1.4;  // of the kernel per iteration, until it has its own width
-  constexpr double kSmallStep = 1e-6;  // [m], [rad]
+  constexpr double TIGHTENING = 1.4;   // of the kernel per iteration, until it has its own width
+  constexpr double SMALL_STEP = 1e-6;  // [m], [rad]
   validate(start.size(), edges, priors, parameters);
   PoseGraphSolution solution;
   solution.world_from_node = start;
@@ -100,12 +183,12 @@ PoseGraphSolution solvePoseGraph(const std::vector<Eigen::Isometry3d>& start,
     const Eigen::VectorXd step =
         gaussNewtonStep(PoseGraphEquations(solution.world_from_node, edges, solution.edge_weights, priors));
     for (std::size_t n = 0; n < start.size(); ++n) {
-      const Twist motion = step.segment<6>(static_cast<Eigen::Index>(6 * n));
+      const Vector6d motion = step.segment<6>(static_cast<Eigen::Index>(6 * n));
       solution.world_from_node[n] = solution.world_from_node[n] * motionOf(motion);
     }
     const bool is_final_kernel = widening <= 1.0;
-    widening = std::max(1.0, widening / kTightening);
-    solution.converged = is_final_kernel && step.cwiseAbs().maxCoeff() < kSmallStep;
+    widening = std::max(1.0, widening / TIGHTENING);
+    solution.converged = is_final_kernel && step.cwiseAbs().maxCoeff() < SMALL_STEP;
   }
   return solution;
 }

@@ -1,4 +1,4 @@
-#include "align/heaviest_clique.h"
+#include "align/segment_matching.h"
 
 #include <gtest/gtest.h>
 

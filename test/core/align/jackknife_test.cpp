@@ -1,4 +1,4 @@
-#include "align/jackknife.h"
+#include "pcl_fft_ground/core/align/rigid_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -2,12 +2,13 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "pcl_fft_ground/core/export.h"
 
 namespace pcl_fft_ground::core {
 
-/** Least-squares turn about the vertical and shift that bring points on to their partners, in closed form. */
+/** Least-squares turn about the vertical and shift that bring points on to others, in closed form. */
 class YawFit {
  public:
   /// The weight is at least 0.
@@ -78,6 +79,17 @@ class MotionFit {
   Matrix6d information_ = Matrix6d::Zero();
   Vector6d gradient_ = Vector6d::Zero();
 };
+
+/** Covariance of a motion by how far parts of the scene contradict each other: the jackknife.
+ *
+ * Errors that points of one part share, by drift inside a scan or by what each scan sees of an object, make
+ * the parts disagree, however many points they have. Each part is left out in turn; of n parts
+ * C = (n - 1) / n sum (v_i - v)(v_i - v)^T, v the motion by all of them, v_i that without the i-th.
+ *
+ * \param parts equations of each part for motions about one centre; parts without equations do not count
+ * \return zero for fewer than two parts
+ */
+PCL_FFT_GROUND_CORE_EXPORT Matrix6d jackknifeCovariance(const std::vector<MotionFit>& parts);
 
 /** Covariance for motions about the origin of what was found for motions about `centre`. */
 PCL_FFT_GROUND_CORE_EXPORT Matrix6d covarianceAboutOrigin(const Matrix6d& about_centre,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "pcl_fft_ground/core/export.h"
 #include "pcl_fft_ground/core/grid/elevation_grid.h"
@@ -34,5 +35,10 @@ struct ScanCoverage {
  * \throws std::length_error if the grid would have more than MAX_CELLS cells
  */
 PCL_FFT_GROUND_CORE_EXPORT ScanCoverage coverageOf(const PointsView& points, double cell_size);
+
+/// Share of the smaller of two scans' covered areas that the other covers, too, seen from above: 0 to 1; 0 if
+/// either covers nothing. \param reference_from_moving where the moving scan lies
+PCL_FFT_GROUND_CORE_EXPORT double overlapShare(const ScanCoverage& reference, const ScanCoverage& moving,
+                                               const Eigen::Isometry3d& reference_from_moving);
 
 }  // namespace pcl_fft_ground::core

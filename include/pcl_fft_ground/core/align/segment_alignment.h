@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pcl_fft_ground/core/align/nearest_neighbours.h"
+#include "pcl_fft_ground/core/align/rigid_fit.h"
 #include "pcl_fft_ground/core/export.h"
 #include "pcl_fft_ground/core/segments/segment.h"
 
@@ -60,6 +61,9 @@ struct AlignmentParameters {
   NearestNeighboursFactory neighbours = columnNeighbours;  ///< how neighbours are searched
 };
 
+/// \throws std::invalid_argument naming the parameter, its value and what is allowed, if one is out of range
+PCL_FFT_GROUND_CORE_EXPORT void validate(const AlignmentParameters& parameters);
+
 /// A segment of one scan that is the same thing as one of the other.
 struct SegmentMatch {
   std::size_t moving = 0;     ///< index into the segments of the moving scan
@@ -85,7 +89,7 @@ struct Alignment {
   /** Covariance of (translation [m], rotation vector [rad]) of a small motion applied after the transform,
    * about the origin of the reference; zero if nothing was computed.
    */
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
 };
 
 /** Aligns two overlapping scans by their segments: S-ICP (Douillard et al., ICRA 2012).

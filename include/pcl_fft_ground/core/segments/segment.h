@@ -30,6 +30,9 @@ struct SegmentParameters {
   std::size_t max_segments = 60;     ///< of more, the largest are kept
 };
 
+/// \throws std::invalid_argument naming the parameter, its value and what is allowed, if one is out of range
+PCL_FFT_GROUND_CORE_EXPORT void validate(const SegmentParameters& parameters);
+
 /** What alignment needs to know of a scan: its segments, and what to make of the places without any.
  *
  * A scan without points is described by a default value: no segments, nothing covered.

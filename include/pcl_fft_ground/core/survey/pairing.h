@@ -28,11 +28,6 @@ struct SubmapPair {
  */
 PCL_FFT_GROUND_CORE_EXPORT std::vector<SubmapPair> chainPairs(const std::vector<Eigen::Vector3d>& centroids);
 
-/// Share of the smaller of two scans' covered areas that the other covers, too, seen from above: 0 to 1; 0 if
-/// either covers nothing. \param reference_from_moving where the moving scan lies
-PCL_FFT_GROUND_CORE_EXPORT double overlapShare(const ScanCoverage& reference, const ScanCoverage& moving,
-                                               const Eigen::Isometry3d& reference_from_moving);
-
 /** All pairs of sub-maps that overlap, but those that are listed already, whichever way round.
  * \param coverages what each sub-map covers, in its own frame
  * \param world_from_submap poses of the sub-maps; as many

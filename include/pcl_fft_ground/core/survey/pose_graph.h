@@ -6,12 +6,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "pcl_fft_ground/core/align/rigid_fit.h"
 #include "pcl_fft_ground/core/export.h"
 
 namespace pcl_fft_ground::core {
 
 /// Covariance of (translation [m], rotation vector [rad]) of a small motion.
-using MotionCovariance = Eigen::Matrix<double, 6, 6>;
+using MotionCovariance = Matrix6d;
 
 /// How one sub-map lies to another, as an alignment of the two has it.
 struct PoseGraphEdge {

@@ -1,12 +1,10 @@
-#include "align/alignment_gates.h"
+#include "align/verdict.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
-
-#include "align/alignment_score.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -26,7 +24,49 @@ double largestDeviation(const Eigen::Matrix2d& covariance) {
   return std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
 }
 
+constexpr double NEAR = 1.5;                 // points this near agree [voxels]
+constexpr Eigen::Index SCORE_SAMPLE = 3000;  // points of each scan
+
+/// Adds the points that the other scan has seen, and those that agree with it.
+template <typename Sees>
+void count(const Points& sample, const Eigen::Isometry3d& transform, const NearestNeighbours& search,
+           const Sees& sees, float near, std::size_t& seen, std::size_t& agreeing) {
+  for (Eigen::Index n = 0; n < sample.cols(); ++n) {
+    const Eigen::Vector3d point = transform * sample.col(n).cast<double>();
+    if (!sees(point)) continue;
+    ++seen;
+    if (search.nearest(point.cast<float>(), near).index >= 0) ++agreeing;
+  }
+}
+
 }  // namespace
+
+AlignmentScore::AlignmentScore(const ScanPair& pair)
+    : pair_(pair),
+      moving_(transformed(pair.movingScan().objects, pair.initialGuess())),
+      moving_sample_(evenSample(moving_, SCORE_SAMPLE)),
+      reference_sample_(evenSample(pair.referenceScan().objects, SCORE_SAMPLE)),
+      moving_search_(pair.parameters().neighbours(moving_, pair.voxelSize())),
+      reference_search_(pair.parameters().neighbours(pair.referenceScan().objects, pair.voxelSize())) {}
+
+Agreement AlignmentScore::of(const Eigen::Isometry3d& correction) const {
+  const auto near = static_cast<float>(NEAR * pair_.voxelSize());
+  std::size_t seen = 0;
+  std::size_t agreeing = 0;
+  count(
+      moving_sample_, correction, *reference_search_,
+      [this](const Eigen::Vector3d& place) { return pair_.referenceSees(place); }, near, seen, agreeing);
+  count(
+      reference_sample_, correction.inverse(), *moving_search_,
+      [this](const Eigen::Vector3d& place) { return pair_.movingSees(place); }, near, seen, agreeing);
+  if (seen == 0) return {};
+  return {static_cast<double>(agreeing) / static_cast<double>(seen), seen};
+}
+
+double overlapOf(const ScanPair& pair, const Eigen::Isometry3d& correction) {
+  return overlapShare(pair.referenceScan().coverage, pair.movingScan().coverage,
+                      correction * pair.initialGuess());
+}
 
 std::optional<Matrix6d> covarianceAboutCentre(const IcpResult& icp) {
   constexpr double UNHELD = 1e-9;
@@ -62,7 +102,8 @@ std::string reasonAgainst(const ScanPair& pair, const IcpResult& icp) {
   const double max_sigma = pair.parameters().max_sigma;
   const double sigma = largestDeviation(covariance->topLeftCorner<2, 2>());
   if (sigma > max_sigma) return sentence("the predicted horizontal deviation", sigma, max_sigma, " m");
-  // Each scan sees its own side of things; the error that all partners share may be as large as what is left.
+  // Each scan sees its own side of things; the error that all correspondences share may be as large as what
+  // is left.
   const double residual = std::sqrt(icp.variance);
   if (residual > max_sigma)
     return sentence("the distance left between the surfaces", residual, max_sigma, " m");

@@ -2,8 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "align/icp.h"
 #include "align/scan_pair.h"
+#include "pcl_fft_ground/core/align/dense_alignment.h"
 
 namespace pcl_fft_ground::core {
 
@@ -31,5 +35,25 @@ class AlignmentScore {
 
 /// Share of the smaller scan's area that both have seen, under a correction of the initial guess.
 double overlapOf(const ScanPair& pair, const Eigen::Isometry3d& correction);
+
+/// Covariance of an alignment for motions about the centre of the ICP's points; nothing if they do not hold
+/// it.
+std::optional<Matrix6d> covarianceAboutCentre(const IcpResult& icp);
+
+/// Why a correction of the initial guess is larger than it may be; empty if it is not.
+std::string reasonAgainstMotion(const ScanPair& pair, const IcpResult& icp);
+
+/// Why a correction of the initial guess is not to be believed, by its size, its predicted error and what is
+/// left of the distances; empty if it is.
+std::string reasonAgainst(const ScanPair& pair, const IcpResult& icp);
+
+/// The initial guess as it is, and why.
+Alignment refused(const ScanPair& pair, const std::string& reason);
+
+/// The result with what every method reports: transform, covariance, overlap.
+Alignment alignmentOf(const ScanPair& pair, const IcpResult& icp, AlignmentMethod method);
+
+/// Dense ICP of a pair, gated, see alignDensely() of scans.
+Alignment alignDensely(const ScanPair& pair, DensePoints which);
 
 }  // namespace pcl_fft_ground::core
