@@ -76,11 +76,6 @@ class ScanDescriber {
   /// Turns the frame of the clouds to that of the descriptions.
   Eigen::Matrix3d levelFromInput() const;
 
-  /// The points that are described: finite and not far from all others (core::findFarPoints()), in order.
-  /// \param indices the points to take, within the cloud; null: all
-  static core::Points usablePoints(const pcl::PointCloud<PointT>& cloud,
-                                   const pcl::Indices* indices = nullptr);
-
  private:
   template <typename Describe>
   core::ScanSegments describeOrSayWhy(const pcl::PointCloud<PointT>& cloud, const pcl::Indices* indices,

@@ -7,11 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/align/align_command.h"
-#include "commands/evaluate/evaluate_command.h"
-#include "commands/segment/segment_command.h"
-#include "commands/simulate/simulate_command.h"
-#include "commands/survey/survey_command.h"
+#include "commands/commands.h"
 #include "errors.h"
 #include "pcl_fft_ground/version.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/survey/survey_table.h"
+#include "pcl_fft_ground/core/survey/survey_tables.h"
 #include "pcl_fft_ground/simulation/simulation.h"
 #include "survey_trials.h"
 #include "trial_file.h"
@@ -87,12 +87,12 @@ void runAll(const std::vector<Trial>& trials, Benchmark& benchmark, Row& row) {
 void print(const Row& row) {
   const TrialResults& r = row.results;
   if (r.trials == 0) return;
-  const auto millimetres = [&](double share) { return 1e3 * cli::quantileOf(r.errors, share).value_or(0); };
+  const auto millimetres = [&](double share) { return 1e3 * core::quantileOf(r.errors, share).value_or(0); };
   const double ratio =
-      cli::quantileOf(r.seconds, 0.5).value_or(0) / cli::quantileOf(row.tree_seconds, 0.5).value_or(1);
+      core::quantileOf(r.seconds, 0.5).value_or(0) / core::quantileOf(row.tree_seconds, 0.5).value_or(1);
   const double share = static_cast<double>(r.accepted) / static_cast<double>(r.trials);
   std::printf("%-32s %5zu %7zu %5zu %6.1f %6.1f %5zu %7.2f %7.2f %9.2f\n", row.name.c_str(), r.trials,
-              r.accepted, r.dense, 100 * share, 100 * cli::lowerBound(r.accepted, r.trials), r.wrong,
+              r.accepted, r.dense, 100 * share, 100 * core::lowerBound(r.accepted, r.trials), r.wrong,
               millimetres(0.5), millimetres(0.9), ratio);
   std::fflush(stdout);
 }

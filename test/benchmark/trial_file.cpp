@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <stdexcept>
 
-#include "commands/align/align_outputs.h"
+#include "commands/align/align_report.h"
 
 TrialFile::TrialFile(const std::string& path) {
   if (path.empty()) return;

@@ -1,4 +1,4 @@
-#include "commands/align/align_command.h"
+#include "commands/commands.h"
 
 #include <Eigen/Geometry>
 #include <fstream>

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/segment/segment_command.h"
+#include "commands/commands.h"
 #include "io/cloud_fields.h"
 #include "io/pcd_cloud.h"
 #include "temporary_folder.h"

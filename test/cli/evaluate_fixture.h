@@ -3,8 +3,7 @@
 #include <string>
 
 #include "command_fixture.h"
-#include "commands/evaluate/evaluate_command.h"
-#include "commands/simulate/simulate_command.h"
+#include "commands/commands.h"
 
 namespace pcl_fft_ground::cli {
 

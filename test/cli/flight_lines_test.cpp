@@ -9,7 +9,7 @@
 #include <string>
 
 #include "command_fixture.h"
-#include "commands/align/align_command.h"
+#include "commands/commands.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

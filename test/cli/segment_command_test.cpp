@@ -1,4 +1,4 @@
-#include "commands/segment/segment_command.h"
+#include "commands/commands.h"
 
 #include <array>
 #include <fstream>

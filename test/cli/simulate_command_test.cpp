@@ -1,4 +1,4 @@
-#include "commands/simulate/simulate_command.h"
+#include "commands/commands.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

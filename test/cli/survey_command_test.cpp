@@ -1,4 +1,4 @@
-#include "commands/survey/survey_command.h"
+#include "commands/commands.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

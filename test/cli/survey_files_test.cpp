@@ -1,12 +1,19 @@
 #include <gtest/gtest.h>
 
-#include "commands/survey/survey_pair.h"
+#include <sstream>
+
+#include "commands/survey/survey_pairs.h"
+#include "commands/survey/survey_report.h"
 #include "errors.h"
 #include "io/pose_table.h"
 #include "temporary_folder.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
+
+using core::PairKind;
+using core::PairResult;
+using core::PairStatus;
 
 class SurveyFiles : public TemporaryFolder {};
 
@@ -100,6 +107,23 @@ TEST_F(SurveyFiles, DamagedPairsAreRefusedNamingTheFile) {
   EXPECT_THROW(readPairs(path, {"a.pcd", "b.pcd"}), WorkError);
   makeFile("pairs.csv", "method\n");
   EXPECT_THROW(readPairs(path, {"a.pcd", "b.pcd"}), WorkError);
+}
+
+TEST(SurveyReport, PrintsTheColumnsOfThePaperAndNanWithoutAlignments) {
+  PairResult crisper, never;
+  crisper.method = "fft";
+  crisper.status = PairStatus::ALIGNED;
+  crisper.overlap = 0.4;
+  crisper.nx_before = 1000;
+  crisper.nx_after = 800;
+  never.method = "graph-cut";
+  never.status = PairStatus::NOT_RUN;
+  never.refusal = "not run: too many cells";
+  std::ostringstream out;
+  printTables(out, {crisper, never});
+  for (const char* text : {"mean dNx [%]", "std dNx [%]", "dNx > 0", "dNx = 0", "dNx < 0", "unprocessed",
+                           "-25.00", "Nan", "1/1", "not run: too many cells"})
+    EXPECT_NE(out.str().find(text), std::string::npos) << text;
 }
 
 TEST(SegmenterOf, TakesTheFallbackOff) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "command_fixture.h"
-#include "commands/simulate/simulate_command.h"
+#include "commands/commands.h"
 #include "io/cloud_file.h"
 #include "io/pose_table.h"
 

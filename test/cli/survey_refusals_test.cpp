@@ -1,7 +1,6 @@
 // What the commands `survey` and `align` refuse, and what they explain.
 
-#include "commands/align/align_command.h"
-#include "commands/survey/survey_command.h"
+#include "commands/commands.h"
 #include "errors.h"
 #include "survey_fixture.h"
 

@@ -23,6 +23,20 @@ core::UsablePoints usablePointsOf(const pcl::PointCloud<PointT>& cloud, const pc
   return listed.areValid() ? core::usablePoints(listed.rawPoints()) : core::UsablePoints();
 }
 
+/// A label for each usable point.
+template <typename PointT>
+core::Labels labelsOf(const IndexedPoints<PointT>& listed, std::size_t cloud_size,
+                      const core::UsablePoints& usable, const pcl::PointIndices& objects) {
+  std::vector<bool> is_object(cloud_size, false);
+  for (const pcl::index_t n : objects.indices) is_object[static_cast<std::size_t>(n)] = true;
+  core::Labels labels;
+  for (Eigen::Index n = 0; n < usable.points.cols(); ++n) {
+    const pcl::index_t point = listed.index(static_cast<std::size_t>(usable.column(n)));
+    labels.push_back(is_object[static_cast<std::size_t>(point)] ? core::Label::OBJECT : core::Label::GROUND);
+  }
+  return labels;
+}
+
 /// The columns of the usable points that belong to each cluster.
 template <typename PointT>
 std::vector<std::vector<Eigen::Index>> columnsOf(const IndexedPoints<PointT>& listed, std::size_t cloud_size,
@@ -71,15 +85,10 @@ Eigen::Matrix3d ScanDescriber<PointT>::levelFromInput() const {
 }
 
 template <typename PointT>
-core::Points ScanDescriber<PointT>::usablePoints(const pcl::PointCloud<PointT>& cloud,
-                                                 const pcl::Indices* indices) {
-  return impl::usablePointsOf(cloud, indices).points;
-}
-
-template <typename PointT>
 double ScanDescriber<PointT>::voxelSizeFor(const pcl::PointCloud<PointT>& cloud,
                                            const pcl::Indices* indices) const {
-  return parameters_.voxel_size ? *parameters_.voxel_size : core::voxelSizeFor(usablePoints(cloud, indices));
+  return parameters_.voxel_size ? *parameters_.voxel_size
+                                : core::voxelSizeFor(impl::usablePointsOf(cloud, indices).points);
 }
 
 template <typename PointT>
@@ -128,23 +137,15 @@ core::ScanSegments ScanDescriber<PointT>::describe(const PointCloudConstPtr& clo
       *cloud, indices.get(), voxel_size,
       [&](const core::UsablePoints& usable, const core::SegmentParameters& parameters) {
         const impl::IndexedPoints<PointT> listed(*cloud, indices.get());
-        Clusters clusters = clusters_;
-        if (clusters.empty()) {
-          const pcl::PointIndices objects = findObjects(cloud, indices);
-          if (!clusterer_) {
-            std::vector<bool> is_object(cloud->size(), false);
-            for (const pcl::index_t n : objects.indices) is_object[static_cast<std::size_t>(n)] = true;
-            core::Labels labels;
-            for (Eigen::Index n = 0; n < usable.points.cols(); ++n) {
-              const pcl::index_t point = listed.index(static_cast<std::size_t>(usable.column(n)));
-              labels.push_back(is_object[static_cast<std::size_t>(point)] ? core::Label::OBJECT
-                                                                          : core::Label::GROUND);
-            }
-            return core::describeScan(usable.points, labels, parameters);
-          }
-          clusters = clusterer_(cloud, pcl::IndicesConstPtr(new pcl::Indices(objects.indices)));
-        }
-        return core::describeScan(usable.points, impl::columnsOf(listed, cloud->size(), usable, clusters),
+        const auto from = [&](const Clusters& clusters) {
+          return core::describeScan(usable.points, impl::columnsOf(listed, cloud->size(), usable, clusters),
+                                    parameters);
+        };
+        if (!clusters_.empty()) return from(clusters_);
+        const pcl::PointIndices objects = findObjects(cloud, indices);
+        if (clusterer_)
+          return from(clusterer_(cloud, pcl::IndicesConstPtr(new pcl::Indices(objects.indices))));
+        return core::describeScan(usable.points, impl::labelsOf(listed, cloud->size(), usable, objects),
                                   parameters);
       });
 }

@@ -29,7 +29,7 @@ std::size_t SurveyAlignment<PointT>::addScan(const PointCloudConstPtr& cloud,
   };
   if (!cloud) refuse("there is no cloud");
   if (!world_from_scan.matrix().allFinite()) refuse("the pose is not finite");
-  const core::Points points = ScanDescriber<PointT>::usablePoints(*cloud);
+  const core::Points points = impl::usablePointsOf<PointT>(*cloud, nullptr).points;
   if (points.cols() == 0) refuse("none of the scan's points is finite; at least one has to be");
   try {
     core::validate(sigmas);

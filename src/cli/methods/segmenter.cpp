@@ -9,17 +9,23 @@
 #include "command_line.h"
 #include "errors.h"
 #include "io/scanner.h"
-#include "methods/parameter_setter.h"
-#include "pcl_fft_ground/graph_cut_ground_segmentation.h"
-#include "pcl_fft_ground/grid_ground_segmentation.h"
-#include "pcl_fft_ground/naive_ground_segmentation.h"
-#include "pcl_fft_ground/planar_ground_segmentation.h"
+#include "methods/method.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
 
 namespace po = boost::program_options;
 using nlohmann::ordered_json;
+
+/// The methods that there are, in the order of the paper's tables.
+constexpr std::array<Method, 6> REGISTRY{
+    {{"naive", "", Tolerance::NONE, addOtherOptions, makeNaive},
+     {"planar", "", Tolerance::NONE, addOtherOptions, makePlanar},
+     {"grid", "", Tolerance::NONE, addOtherOptions, makeGrid},
+     {"graph-cut", "", Tolerance::OWN, addOtherOptions, makeGraphCut},
+     {"fft-lowpass", "the published method", Tolerance::NONE, addFrequencyOptions, makeLowPass},
+     {"fft", "the robust one", Tolerance::OWN, addFrequencyOptions, makeRobust}}};
 
 constexpr std::array<std::pair<const char*, UpEstimation>, 3> UP_ESTIMATIONS{
     {{"auto", UpEstimation::AUTO},
@@ -28,11 +34,6 @@ constexpr std::array<std::pair<const char*, UpEstimation>, 3> UP_ESTIMATIONS{
 constexpr std::array<std::pair<const char*, Yaw>, 3> YAWS{{{"min-area-rectangle", Yaw::MIN_AREA_RECTANGLE},
                                                            {"principal-axes", Yaw::PRINCIPAL_AXES},
                                                            {"none", Yaw::NONE}}};
-constexpr std::array<std::pair<const char*, bool>, 2> SWITCH{{{"on", true}, {"off", false}}};
-constexpr std::array<std::pair<const char*, Estimator>, 2> ESTIMATORS{
-    {{"robust", Estimator::ROBUST}, {"low-pass", Estimator::LOW_PASS}}};
-constexpr std::array<std::pair<const char*, CellStatistic>, 2> CELL_STATISTICS{
-    {{"lowest", CellStatistic::LOWEST}, {"mean", CellStatistic::MEAN}}};
 
 Eigen::Vector3d toDirection(const std::string& text) {
   std::string_view rest = text;
@@ -44,9 +45,41 @@ Eigen::Vector3d toDirection(const std::string& text) {
   return {*x, *y, *z};
 }
 
-std::vector<double> asList(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
+/// The side of an elevation cell, which the pictures want of methods, too, that have no use for it.
+double cellSize(const po::variables_map& values) {
+  FFTGroundSegmentation<Point> checking;
+  checking.setEstimator(Estimator::LOW_PASS);  // the other one has no fixed cell size
+  ordered_json noted;
+  ParameterSetter(values, noted)
+      .set<double>(
+          "cell-size", [&](double v) { checking.setCellSize(v); }, [&] { return checking.getCellSize(); });
+  return checking.getCellSize();
 }
+
+po::options_description commonOptions() {
+  const auto number = [] { return po::value<double>(); };
+  po::options_description common("Segmentation", HELP_WIDTH, HELP_TEXT_WIDTH);
+  auto add = common.add_options();
+  add("cell-size", number()->value_name("M"),
+      "side of an elevation cell [m], above 0 (0.02; fft: chosen from the data)");
+  add("max-object-size", number()->value_name("M"),
+      "size of the largest object [m], above 0: anything larger is ground");
+  add("height-tolerance", number()->value_name("M"),
+      "height above the ground up to which a point is ground [m] (0; graph-cut: 0.02; fft: chosen from the "
+      "data)");
+  add("up-direction", po::value<std::string>()->value_name("X Y Z"),
+      "direction of positive elevation (0 0 1)");
+  add("up-estimation", po::value<std::string>()->value_name("NAME"),
+      "principal-axis: the direction in which the points vary least, turned towards --up-direction; given: "
+      "--up-direction itself; auto: the principal axis where it can be trusted (fft and graph-cut: "
+      "auto; fft-lowpass: principal-axis; naive, planar and grid: given)");
+  add("yaw", po::value<std::string>()->value_name("NAME"),
+      "how the grid is turned about up: min-area-rectangle, principal-axes or none (min-area-rectangle; "
+      "naive, planar and grid: none)");
+  return common;
+}
+
+}  // namespace
 
 void setUpCommon(GroundSegmentation<Point>& filter, ParameterSetter& parameters) {
   parameters.set<std::string>(
@@ -63,147 +96,6 @@ void setUpCommon(GroundSegmentation<Point>& filter, ParameterSetter& parameters)
       "height-tolerance", [&](double v) { filter.setHeightTolerance(v); },
       [&] { return filter.getHeightTolerance(); });
 }
-
-/// What has to be known before anything else: it decides about defaults.
-template <typename Filter>
-void prepare(Filter&, const std::string&, ParameterSetter&) {}
-
-void prepare(FFTGroundSegmentation<Point>& fft, const std::string& method, ParameterSetter& parameters) {
-  if (method == "fft-lowpass") return fft.setEstimator(Estimator::LOW_PASS);
-  parameters.set<std::string>(
-      "estimator", [&](const auto& v) { fft.setEstimator(valueNamed("estimator", v, ESTIMATORS)); },
-      [&] { return nameOf(fft.getEstimator(), ESTIMATORS); });
-}
-
-void setUpLowPass(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "cutoff-frequency", [&](double v) { fft.setCutoffFrequency(v); },
-      [&] { return fft.getCutoffFrequency(); });
-  parameters.setCount(
-      "peak-window", [&](unsigned v) { fft.setPeakWindow(v); }, [&] { return fft.getPeakWindow(); });
-  parameters.set<double>(
-      "peak-threshold", [&](double v) { fft.setPeakThreshold(v); }, [&] { return fft.getPeakThreshold(); });
-  parameters.set<bool>(
-      "exact-grid",
-      [&](bool exact) {
-        if (exact) fft.setGridLengths(core::GridLengths::EXACT);
-      },
-      [&] { return fft.getGridLengths() == core::GridLengths::EXACT; });
-}
-
-void setUpRobustFit(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "max-slope", [&](double v) { fft.setMaximumSlope(v); }, [&] { return fft.getMaximumSlope(); });
-  parameters.set<double>(
-      "finest-wavelength", [&](double v) { fft.setFinestWavelength(v); },
-      [&] { return fft.getFinestWavelength(); });
-  parameters.set<std::string>(
-      "cell-statistic",
-      [&](const auto& v) { fft.setCellStatistic(valueNamed("cell-statistic", v, CELL_STATISTICS)); },
-      [&] { return nameOf(fft.getCellStatistic(), CELL_STATISTICS); });
-}
-
-void setUp(FFTGroundSegmentation<Point>& fft, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "cell-size", [&](double v) { fft.setCellSize(v); }, [&] { return fft.getCellSize(); });
-  parameters.set<double>(
-      "max-object-size", [&](double v) { fft.setMaximumObjectSize(v); },
-      [&] { return fft.getMaximumObjectSize(); });
-  parameters.set<double>(
-      "relative-max-object-size", [&](double v) { fft.setRelativeMaximumObjectSize(v); },
-      [&] { return fft.getRelativeMaximumObjectSize(); });
-  parameters.setCount(
-      "filter-order", [&](unsigned v) { fft.setFilterOrder(v); }, [&] { return fft.getFilterOrder(); });
-  parameters.set<double>(
-      "passband-ripple", [&](double v) { fft.setPassbandRipple(v); },
-      [&] { return fft.getPassbandRipple(); });
-  // What is of the other estimator only is checked all the same.
-  ordered_json not_in_force;
-  ParameterSetter others = parameters.notingIn(not_in_force);
-  const bool low_pass = fft.getEstimator() == Estimator::LOW_PASS;
-  setUpLowPass(fft, low_pass ? parameters : others);
-  setUpRobustFit(fft, low_pass ? others : parameters);
-}
-
-void setUp(NaiveGroundSegmentation<Point>&, ParameterSetter&) {}
-
-void setUp(PlanarGroundSegmentation<Point>& planar, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "distance-threshold", [&](double v) { planar.setDistanceThreshold(v); },
-      [&] { return planar.getDistanceThreshold(); });
-  parameters.setCount(
-      "max-iterations", [&](unsigned v) { planar.setMaxIterations(static_cast<int>(v)); },
-      [&] { return planar.getMaxIterations(); });
-  parameters.set<double>(
-      "probability", [&](double v) { planar.setProbability(v); }, [&] { return planar.getProbability(); });
-  parameters.set<std::string>(
-      "optimize-coefficients",
-      [&](const auto& v) { planar.setOptimizeCoefficients(valueNamed("optimize-coefficients", v, SWITCH)); },
-      [&] { return nameOf(planar.getOptimizeCoefficients(), SWITCH); });
-  parameters.setCount(
-      "plane-seed", [&](unsigned v) { planar.setSeed(v); }, [&] { return planar.getSeed(); });
-}
-
-void setUp(GridGroundSegmentation<Point>& grid, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "cell-size", [&](double v) { grid.setCellSize(v); }, [&] { return grid.getCellSize(); });
-  parameters.set<double>(
-      "voxel-height", [&](double v) { grid.setVoxelHeight(v); }, [&] { return grid.getVoxelHeight(); });
-}
-
-void setUp(GraphCutGroundSegmentation<Point>& cut, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "cell-size", [&](double v) { cut.setCellSize(v); }, [&] { return cut.getCellSize(); });
-  parameters.set<double>(
-      "max-object-size", [&](double v) { cut.setMaximumObjectSize(v); },
-      [&] { return cut.getMaximumObjectSize(); });
-  parameters.set<double>(
-      "object-height", [&](double v) { cut.setObjectHeight(v); }, [&] { return cut.getObjectHeight(); });
-  parameters.set<double>(
-      "step-height", [&](double v) { cut.setStepHeight(v); }, [&] { return cut.getStepHeight(); });
-  parameters.set<double>(
-      "smoothness", [&](double v) { cut.setSmoothness(v); }, [&] { return cut.getSmoothness(); });
-}
-
-template <typename Filter>
-Segmenter make(const std::string& method, const po::variables_map& values) {
-  Segmenter segmenter;
-  segmenter.method = method;
-  auto filter = std::make_unique<Filter>();
-  ParameterSetter parameters(values, segmenter.parameters);
-  prepare(*filter, method, parameters);
-  setUpCommon(*filter, parameters);
-  setUp(*filter, parameters);
-  if constexpr (std::is_same_v<Filter, FFTGroundSegmentation<Point>>) segmenter.fft = filter.get();
-  segmenter.filter = std::move(filter);
-  return segmenter;
-}
-
-/// The side of an elevation cell, which the pictures want of methods, too, that have no use for it.
-double cellSize(const po::variables_map& values) {
-  FFTGroundSegmentation<Point> checking;
-  checking.setEstimator(Estimator::LOW_PASS);  // the other one has no fixed cell size
-  ordered_json noted;
-  ParameterSetter(values, noted)
-      .set<double>(
-          "cell-size", [&](double v) { checking.setCellSize(v); }, [&] { return checking.getCellSize(); });
-  return checking.getCellSize();
-}
-
-using Maker = Segmenter (*)(const std::string&, const po::variables_map&);
-
-const std::vector<std::pair<std::string, Maker>>& methods() {
-  static const std::vector<std::pair<std::string, Maker>> makers{
-      {"naive", make<NaiveGroundSegmentation<Point>>},
-      {"planar", make<PlanarGroundSegmentation<Point>>},
-      {"grid", make<GridGroundSegmentation<Point>>},
-      {"graph-cut", make<GraphCutGroundSegmentation<Point>>},
-      {"fft-lowpass", make<FFTGroundSegmentation<Point>>},
-      {"fft", make<FFTGroundSegmentation<Point>>}};
-  return makers;
-}
-
-}  // namespace
 
 double Segmenter::cellSize() const {
   return fft != nullptr ? fft->getCellSize() : default_cell_size;
@@ -224,25 +116,45 @@ ordered_json Segmenter::parametersInForce() const {
 const std::vector<std::string>& methodNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> result;
-    for (const auto& [name, maker] : methods()) result.push_back(name);
+    for (const Method& method : REGISTRY) result.push_back(method.name);
     return result;
   }();
   return names;
 }
 
-Segmenter makeSegmenter(const std::string& method, const po::variables_map& values) {
+std::string methodChoice() {
+  std::string choice;
+  for (std::size_t n = 0; n < REGISTRY.size(); ++n) {
+    choice += n == 0 ? "" : n + 1 == REGISTRY.size() ? " or " : ", ";
+    choice += REGISTRY[n].name;
+    if (*REGISTRY[n].note != '\0') choice += std::string(" (") + REGISTRY[n].note + ")";
+  }
+  return choice;
+}
+
+po::options_description segmenterOptions() {
+  po::options_description options = commonOptions();
+  for (auto method = REGISTRY.rbegin(); method != REGISTRY.rend(); ++method) {
+    const bool is_added = std::any_of(REGISTRY.rbegin(), method, [&](const Method& other) {
+      return other.add_options == method->add_options;
+    });
+    if (method->add_options != nullptr && !is_added) method->add_options(options);
+  }
+  return options;
+}
+
+Segmenter makeSegmenter(const std::string& name, const po::variables_map& values) {
   if (values.count("max-object-size") != 0 && values.count("relative-max-object-size") != 0)
     throw UsageError("--max-object-size and --relative-max-object-size: allowed is one of the two");
-  std::string allowed;
-  for (const auto& [name, maker] : methods()) {
-    if (name == method) {
-      Segmenter segmenter = maker(method, values);
-      segmenter.default_cell_size = cellSize(values);
-      return segmenter;
-    }
-    allowed += (allowed.empty() ? "" : ", ") + name;
-  }
-  throw UsageError("--method " + method + ": allowed is one of " + allowed);
+  const auto method =
+      std::find_if(REGISTRY.begin(), REGISTRY.end(), [&](const Method& m) { return m.name == name; });
+  if (method == REGISTRY.end())
+    throw UsageError("--method " + name + ": allowed is one of " + joined(methodNames(), ", "));
+  Segmenter segmenter = method->make(values);
+  segmenter.method = name;
+  segmenter.has_own_tolerance = method->tolerance == Tolerance::OWN;
+  segmenter.default_cell_size = cellSize(values);
+  return segmenter;
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -16,10 +16,11 @@ using Point = pcl::PointXYZ;
 
 /// A segmenter as the command line asks for it.
 struct Segmenter {
-  std::string method;                                 ///< as spelled on the command line
-  std::unique_ptr<GroundSegmentation<Point>> filter;  ///< ready but for its input
-  FFTGroundSegmentation<Point>* fft = nullptr;        ///< the same object if it works in the frequency domain
-  double default_cell_size = 0;                       ///< for methods without cells [m]
+  std::string method;                           ///< as spelled on the command line
+  GroundSegmentation<Point>::Ptr filter;        ///< ready but for its input
+  FFTGroundSegmentation<Point>* fft = nullptr;  ///< the same object if it works in the frequency domain
+  bool has_own_tolerance = false;               ///< whether it needs none to be told
+  double default_cell_size = 0;                 ///< for methods without cells [m]
   nlohmann::ordered_json
       parameters;  ///< those set or by default: option -> {"value", "from": "option" or "default"}
 
@@ -33,6 +34,9 @@ struct Segmenter {
 /// The methods that there are, by the names that the command line gives them, in the order of the paper's
 /// tables.
 const std::vector<std::string>& methodNames();
+
+/// The same as a sentence offers them: "naive, ... or fft (the robust one)".
+std::string methodChoice();
 
 /// The options that set a segmenter; they are spelled as the setters.
 boost::program_options::options_description segmenterOptions();

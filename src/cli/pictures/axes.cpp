@@ -94,23 +94,6 @@ Eigen::Vector2d Plot::pixel(const Eigen::Vector2d& point) const {
   return {area.x + x.share(point.x()) * area.width, area.bottom() - y.share(point.y()) * area.height};
 }
 
-std::string fixedNumber(double value, int decimals) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.setf(std::ios::fixed);
-  text.precision(decimals);
-  text << value;
-  return text.str();
-}
-
-std::string groupedNumber(long long number) {
-  std::string digits = std::to_string(number);
-  const std::ptrdiff_t first = number < 0 ? 1 : 0;
-  for (auto position = static_cast<std::ptrdiff_t>(digits.size()) - 3; position > first; position -= 3)
-    digits.insert(static_cast<std::size_t>(position), ",");
-  return digits;
-}
-
 std::vector<Tick> linearTicks(double low, double high, double most) {
   std::vector<Tick> ticks;
   if (!(high - low > 1e-12 * std::max(std::abs(low), std::abs(high))))

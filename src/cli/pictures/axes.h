@@ -6,6 +6,7 @@
 
 #include "pictures/canvas.h"
 #include "pictures/raster.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 
@@ -36,11 +37,6 @@ struct Tick {
   double value;
   std::string label;
 };
-
-/// A number with a fixed count of decimals, a point as decimal mark in every locale.
-std::string fixedNumber(double value, int decimals);
-/// A whole number with a comma between thousands.
-std::string groupedNumber(long long number);
 
 /// Round values (1, 2 or 5 times a power of ten apart) in [low, high]: at most about `most`, but at least
 /// one.

@@ -1,5 +1,3 @@
-#include "commands/align/align_command.h"
-
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -7,14 +5,13 @@
 #include <string_view>
 
 #include "command_line.h"
-#include "commands/align/align_outputs.h"
-#include "commands/align/scan_description.h"
-#include "commands/segment/segment_report.h"
+#include "commands/align/align_report.h"
+#include "commands/commands.h"
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/scanner.h"
-#include "pictures/axes.h"
 #include "progress.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -54,7 +51,7 @@ po::options_description commandOptions() {
   add("output,o", po::value<std::string>()->value_name("DIR"),
       "directory for the results; other files in it stay");
   add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
-      "how ground is told from objects: naive, planar, grid, graph-cut, fft-lowpass or fft");
+      ("how ground is told from objects: " + methodChoice()).c_str());
   add("guess", po::value<std::string>()->value_name("X,Y,Z,YAW"),
       "place [m] and heading [degrees] of MOVING in the coordinates of REFERENCE, in place of the "
       "VIEWPOINTs");
@@ -90,26 +87,36 @@ Eigen::Isometry3d initialGuess(const po::variables_map& values, const Cloud& ref
          Eigen::Translation3d(moving.origin);
 }
 
-AlignedScan describeScanFile(const std::string& path, Segmenter& segmenter, const AlignmentSettings& settings,
-                             Progress& progress) {
+InputScan readScan(const std::string& path, Progress& progress) {
   progress.begin("read", "reading " + path);
-  AlignedScan scan{path, readCloud(path), {}};
-  progress.begin("segment", "segmenting " + path);
-  scan.segments = describeCloud(path, scan.cloud, segmenter, settings.segments);
-  return scan;
+  return {path, readCloud(path)};
+}
+
+/// \throws WorkError naming the file on which the method cannot work
+void alignClouds(AlignedPair& pair, const AlignmentSettings& settings, const Segmenter& segmenter) {
+  SegmentICP<Point, Point>& icp = pair.icp;
+  icp.setAlignmentParameters(settings.alignment);
+  icp.setSegmentParameters(settings.segments);
+  icp.setGroundSegmentation(segmenter.filter, segmenter.filter);
+  icp.setInputSource(pair.moving.cloud.points);
+  icp.setInputTarget(pair.reference.cloud.points);
+  icp.computeAlignment(pair.guess);
+  if (!icp.getTargetError().empty()) throw WorkError(pair.reference.path + ": " + icp.getTargetError());
+  if (!icp.getSourceError().empty()) throw WorkError(pair.moving.path + ": " + icp.getSourceError());
 }
 
 void printSummary(const AlignedPair& pair, const ordered_json& report) {
-  if (!pair.alignment.accepted) {
-    std::cout << "not aligned: " << pair.alignment.refusal << "\n";
+  const core::Alignment& alignment = pair.icp.getAlignment();
+  if (!alignment.accepted) {
+    std::cout << "not aligned: " << alignment.refusal << "\n";
     return;
   }
-  const Eigen::Isometry3d& found = pair.alignment.reference_from_moving;
-  const Eigen::Vector3d middle = pair.moving.segments.surface.cast<double>().rowwise().mean();
+  const Eigen::Isometry3d& found = alignment.reference_from_moving;
+  const Eigen::Vector3d middle = pair.icp.getSourceScan().surface.cast<double>().rowwise().mean();
   const double turn =
       Eigen::AngleAxisd(pair.guess.linear().transpose() * found.linear()).angle() * 180 / EIGEN_PI;
-  std::cout << "aligned by " << report["method"].get<std::string>() << ": " << pair.alignment.matches.size()
-            << " matches, score " << fixedNumber(pair.alignment.score, 2) << ", moved by "
+  std::cout << "aligned by " << report["method"].get<std::string>() << ": " << alignment.matches.size()
+            << " matches, score " << fixedNumber(alignment.score, 2) << ", moved by "
             << fixedNumber((found * middle - pair.guess * middle).norm(), 3) << " m and "
             << fixedNumber(turn, 2) << " degrees, Nx "
             << fixedNumber(report["crispness"]["delta_nx_percent"].get<double>(), 2) << " %\n";
@@ -123,19 +130,17 @@ void align(const po::variables_map& values) {
   if (values.count("output") == 0 || values["output"].as<std::string>().empty())
     throw UsageError("align: no output given: name a folder by -o DIR");
   const AlignmentSettings settings = alignmentSettings(values);
-  Segmenter segmenter = makeAlignmentSegmenter(values["method"].as<std::string>(), values, settings.version);
+  const Segmenter segmenter =
+      makeAlignmentSegmenter(values["method"].as<std::string>(), values, settings.version);
   const std::string directory = values["output"].as<std::string>();
 
   const bool quiet = values["quiet"].as<bool>();
   Progress progress(quiet);
-  AlignedPair pair{describeScanFile(clouds[0], segmenter, settings, progress),
-                   describeScanFile(clouds[1], segmenter, settings, progress),
-                   Eigen::Isometry3d::Identity(),
-                   {}};
+  AlignedPair pair{
+      readScan(clouds[0], progress), readScan(clouds[1], progress), Eigen::Isometry3d::Identity(), {}};
   pair.guess = initialGuess(values, pair.reference.cloud, pair.moving.cloud);
   progress.begin("align", "aligning");
-  pair.alignment =
-      core::alignScans(pair.moving.segments, pair.reference.segments, pair.guess, settings.alignment);
+  alignClouds(pair, settings, segmenter);
   progress.begin("write", "writing " + directory);
   makeDirectory(directory);
   const ordered_json report = makeAlignmentReport(pair, settings, segmenter);

@@ -58,7 +58,10 @@ void describe(AlignmentSettings& settings) {
                         {"matching", a.matching == core::Matching::PLAIN ? "plain" : "local"},
                         {"fallback", a.fallback == core::Fallback::NONE ? "none" : "dense"},
                         {"max-shift", a.gates.max_shift},
+                        {"max-rise", a.gates.max_rise},
                         {"max-turn", a.gates.max_turn},
+                        {"max-tilt", a.gates.max_tilt},
+                        {"hypotheses", a.gates.hypotheses},
                         {"min-matches", a.min_matches},
                         {"min-score", a.min_score},
                         {"max-sigma", a.max_sigma},
@@ -137,8 +140,8 @@ AlignmentSettings alignmentSettings(const po::variables_map& values) {
 Segmenter makeAlignmentSegmenter(const std::string& method, const po::variables_map& values,
                                  Version version) {
   Segmenter segmenter = makeSegmenter(method, values);
-  const bool knows_tolerance = method == "fft" || method == "graph-cut";
-  if (version == Version::PAPER || knows_tolerance || values.count("height-tolerance") != 0) return segmenter;
+  if (version == Version::PAPER || segmenter.has_own_tolerance || values.count("height-tolerance") != 0)
+    return segmenter;
   segmenter.filter->setHeightTolerance(ROUGH_TOLERANCE);
   segmenter.parameters["height-tolerance"] = {{"value", ROUGH_TOLERANCE}, {"from", "alignment"}};
   return segmenter;

@@ -1,4 +1,4 @@
-#include "commands/align/alignment_picture.h"
+#include "commands/align/align_report.h"
 
 #include <algorithm>
 #include <cmath>

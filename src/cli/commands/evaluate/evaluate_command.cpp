@@ -1,10 +1,9 @@
-#include "commands/evaluate/evaluate_command.h"
-
 #include <algorithm>
 #include <iostream>
 #include <sstream>
 
 #include "command_line.h"
+#include "commands/commands.h"
 #include "commands/evaluate/cloud_evaluation.h"
 #include "commands/evaluate/evaluation_files.h"
 #include "commands/evaluate/evaluation_pictures.h"
@@ -12,6 +11,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "progress.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -41,7 +41,7 @@ po::options_description commandOptions() {
   po::options_description options("General", HELP_WIDTH, HELP_TEXT_WIDTH);
   auto add = options.add_options();
   add("methods", po::value<std::string>()->value_name("NAMES"),
-      "methods, parted by commas (naive,planar,grid,graph-cut,fft-lowpass,fft)");
+      ("methods, parted by commas (" + joined(methodNames(), ",") + ")").c_str());
   add("csv", po::value<std::string>()->value_name("FILE"), "write the table as CSV, too");
   add("pictures", po::value<std::string>()->value_name("DIR"),
       "draw a picture of each cloud to this directory, made if need be: the truth and each method's labels, "

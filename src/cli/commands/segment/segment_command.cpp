@@ -1,16 +1,16 @@
-#include "commands/segment/segment_command.h"
-
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <sstream>
 
 #include "command_line.h"
+#include "commands/commands.h"
 #include "commands/segment/segment_outputs.h"
 #include "commands/segment/segment_report.h"
 #include "errors.h"
 #include "io/output_file.h"
 #include "progress.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -53,8 +53,7 @@ po::options_description commandOptions() {
   add("output,o", po::value<std::string>()->value_name("DIR"),
       "directory for the results; other files in it stay");
   add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
-      "how ground is told from objects: naive, planar, grid, graph-cut, fft-lowpass (the published method) "
-      "or fft (the robust one)");
+      ("how ground is told from objects: " + methodChoice()).c_str());
   add("leaf-size", po::value<double>()->value_name("M"),
       "side of the voxels that cluster the objects [m], above 0; no less than the spacing of the points (the "
       "cell size)");

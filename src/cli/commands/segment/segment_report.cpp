@@ -5,19 +5,15 @@
 #include <iomanip>
 #include <utility>
 
+#include "pcl_fft_ground/version.h"
+#include "report/report.h"
+
 namespace pcl_fft_ground::cli {
 namespace {
 
 using nlohmann::ordered_json;
 
 constexpr std::size_t PEAKS_IN_REPORT = 100;  // the nearest to DC; the rest is of no use to anyone there
-
-ordered_json asRows(const Eigen::Matrix4d& matrix) {
-  ordered_json rows = ordered_json::array();
-  for (Eigen::Index i = 0; i < 4; ++i)
-    rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
-  return rows;
-}
 
 ordered_json describeCounts(const Cloud& cloud, const Segmenter& segmenter,
                             const Segmentation& segmentation) {
@@ -114,7 +110,8 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
                         const std::vector<std::string>& warnings, const Progress& progress) {
   ordered_json seconds;
   for (const auto& [stage, time] : progress.seconds()) seconds[stage] = time;
-  return {{"input", input},
+  return {{"version", PCL_FFT_GROUND_VERSION},
+          {"input", input},
           {"method", segmenter.method},
           {"parameters", std::move(parameters)},
           {"frame_from_input", asRows(segmenter.filter->getFrame().matrix())},
@@ -126,10 +123,6 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
           {"scores", describeScores(segmentation.confusion)},
           {"warnings", warnings},
           {"seconds", seconds}};
-}
-
-std::string asText(const ordered_json& report) {
-  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 void printSummary(std::ostream& out, const ordered_json& report) {

@@ -15,9 +15,6 @@ nlohmann::ordered_json makeReport(const std::string& input, const Cloud& cloud, 
                                   const Segmentation& segmentation, nlohmann::ordered_json parameters,
                                   const std::vector<std::string>& warnings, const Progress& progress);
 
-/// A report as JSON text, a line to each value. A file name that is no UTF-8 gets replacement characters.
-std::string asText(const nlohmann::ordered_json& report);
-
 /// The few lines that a person wants to read of a report.
 void printSummary(std::ostream& out, const nlohmann::ordered_json& report);
 

@@ -1,5 +1,3 @@
-#include "commands/simulate/simulate_command.h"
-
 #include <algorithm>
 #include <boost/program_options.hpp>
 #include <iomanip>
@@ -8,12 +6,11 @@
 #include <set>
 
 #include "command_line.h"
-#include "commands/segment/segment_report.h"
-#include "commands/simulate/simulate_survey_command.h"
-#include "commands/simulate/simulated_cloud.h"
-#include "commands/simulate/simulation_options.h"
+#include "commands/commands.h"
+#include "commands/simulate/simulated_scan.h"
 #include "errors.h"
 #include "pcl_fft_ground/simulation/simulation.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 

@@ -1,5 +1,3 @@
-#include "commands/simulate/simulate_survey_command.h"
-
 #include <boost/program_options.hpp>
 #include <filesystem>
 #include <iostream>
@@ -9,14 +7,13 @@
 #include <system_error>
 
 #include "command_line.h"
-#include "commands/segment/segment_report.h"
-#include "commands/simulate/simulated_cloud.h"
-#include "commands/simulate/simulation_options.h"
+#include "commands/simulate/simulated_scan.h"
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/pose_table.h"
 #include "pcl_fft_ground/simulation/survey_simulation.h"
 #include "progress.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 

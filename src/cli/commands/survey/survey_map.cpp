@@ -1,4 +1,4 @@
-#include "commands/survey/survey_map.h"
+#include "commands/survey/survey_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <optional>
 #include <unordered_set>
 
-#include "commands/align/scan_description.h"
 #include "io/cloud_fields.h"
 #include "io/cloud_file.h"
 #include "io/output_file.h"
 #include "io/pcd_cloud.h"
+#include "methods/segmentation.h"
 #include "pcl_fft_ground/core/align/crispness.h"
 #include "pictures/pictures.h"
 
@@ -71,14 +71,14 @@ class SitePicture {
 };
 
 /// Where the sub-maps lie, by either poses.
-Eigen::AlignedBox2d siteExtent(const SurveyFolder& survey, const SurveyPoses& poses) {
+Eigen::AlignedBox2d siteExtent(const SurveyFolder& survey, const core::SurveyPoses& poses) {
   Eigen::AlignedBox2d extent;
   for (std::size_t i = 0; i < survey.submaps.size(); ++i) {
-    const core::GridGeometry& cells = survey.submaps[i].coverage.geometry;
+    const core::GridGeometry& cells = survey.scans[i].coverage.geometry;
     for (const int corner : {0, 1, 2, 3}) {
       const double x = cells.origin.x() + (corner % 2) * static_cast<double>(cells.rows) * cells.cell_size;
       const double y = cells.origin.y() + (corner / 2) * static_cast<double>(cells.cols) * cells.cell_size;
-      const Eigen::Vector3d place(x, y, survey.submaps[i].centroid.z());
+      const Eigen::Vector3d place(x, y, survey.scans[i].centroid.z());
       extent.extend((poses.navigation[i] * place).head<2>());
       extent.extend((poses.global[i] * place).head<2>());
     }
@@ -87,8 +87,8 @@ Eigen::AlignedBox2d siteExtent(const SurveyFolder& survey, const SurveyPoses& po
 }
 
 /// What is subtracted from the coordinates of the site, so that floats hold them: whole metres.
-Eigen::Vector3d originOf(const SurveyFolder& survey, const SurveyPoses& poses) {
-  const Eigen::Vector3d place = poses.global.front() * survey.submaps.front().centroid;
+Eigen::Vector3d originOf(const SurveyFolder& survey, const core::SurveyPoses& poses) {
+  const Eigen::Vector3d place = poses.global.front() * survey.scans.front().centroid;
   return (place.array().abs() > LARGE_COORDINATE).select(place.array().round(), 0.0);
 }
 
@@ -97,7 +97,7 @@ struct Site {
   Site(const Eigen::AlignedBox2d& extent, const Eigen::Vector3d& subtracted)
       : origin(subtracted), before(extent), after(extent) {}
 
-  void add(const core::Points& points, std::size_t submap, const SurveyPoses& poses) {
+  void add(const core::Points& points, std::size_t submap, const core::SurveyPoses& poses) {
     for (Eigen::Index n = 0; n < points.cols(); ++n) {
       const Eigen::Vector3d point = points.col(n).cast<double>();
       const Eigen::Vector3d by_navigation = poses.navigation[submap] * point;
@@ -140,13 +140,12 @@ void drawSite(const std::string& path, const std::string& title, const SitePictu
 
 }  // namespace
 
-SiteCrispness writeSiteMap(const std::string& folder, const SurveyFolder& survey, const SurveyPoses& poses,
-                           const std::function<void(std::size_t)>& report) {
+SiteCrispness writeSiteMap(const std::string& folder, const SurveyFolder& survey,
+                           const core::SurveyPoses& poses, const std::function<void(std::size_t)>& report) {
   Site site(siteExtent(survey, poses), originOf(survey, poses));
   for (std::size_t i = 0; i < survey.submaps.size(); ++i) {
     report(i + 1);
-    const std::string& path = survey.submaps[i].path;
-    site.add(usablePoints(path, readCloud(path)), i, poses);
+    site.add(usablePoints(*readCloud(survey.submaps[i].path).points).points, i, poses);
   }
   writeMerged(folder + "/merged.pcd", site);
   const std::optional<ValueRange> range = robustRange(site.after.image().values);

@@ -2,31 +2,71 @@
 
 #include <stdexcept>
 
-#include "commands/survey/survey_alignment.h"
-#include "commands/survey/survey_map.h"
-#include "commands/survey/survey_record.h"
+#include "commands/survey/survey_pairs.h"
+#include "commands/survey/survey_report.h"
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/pose_table.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
 
+/// A pair that is to be aligned by one method.
+struct PairTask {
+  std::string method;
+  core::PlannedPair pair;
+};
+
+/// The pairs of the chain by every method, all other pairs that overlap by the one that makes the map.
+std::vector<PairTask> tasksOf(const SurveyFolder& survey, const SurveyRequest& request) {
+  std::vector<PairTask> tasks;
+  for (const core::PlannedPair& pair : core::planPairs(survey.scans)) {
+    if (pair.kind == core::PairKind::OTHER)
+      tasks.push_back({request.mapping, pair});
+    else
+      for (const std::string& method : request.methods) tasks.push_back({method, pair});
+  }
+  return tasks;
+}
+
+/// Aligns one pair from where navigation has it, and measures what came of it.
+core::PairResult alignPair(const PairTask& task, const SurveyFolder& survey, SurveyScans& scans,
+                           const AlignmentSettings& settings) {
+  const core::SubmapPair& pair = task.pair.scans;
+  const Eigen::Isometry3d guess = core::guessOf(pair, survey.scans);
+  const SubmapDescription& moving = scans.describe(task.method, pair.moving);
+  const SubmapDescription& reference = scans.describe(task.method, pair.reference);
+  const std::string& error = moving.error.empty() ? reference.error : moving.error;
+  core::AlignmentParameters parameters = settings.alignment;
+  if (segmenterOf(task.method) != task.method) parameters.fallback = core::Fallback::DENSE;
+  const auto how = task.method == DENSE_ICP ? core::PairAlignment::DENSE : core::PairAlignment::SEGMENTS;
+  core::PairResult result = error.empty() ? core::alignPair(task.pair, survey.scans, moving.segments,
+                                                            reference.segments, guess, parameters, how)
+                                          : core::notRun(task.pair, survey.scans, "not run: " + error);
+  result.method = task.method;
+  const core::Points& moving_points = scans.points(pair.moving);
+  const core::Points& reference_points = scans.points(pair.reference);
+  result = core::withCrispness(std::move(result), guess, moving_points, reference_points);
+  if (survey.truth.empty()) return result;
+  return core::withErrors(std::move(result), survey.scans, survey.truth);
+}
+
 /// Aligns what the record does not have yet.
-std::vector<PairResult> alignPairs(const SurveyTask& task, SurveyRequest& request, const SurveyFolder& survey,
-                                   Progress& progress) {
+std::vector<core::PairResult> alignPairs(const SurveyTask& task, SurveyRequest& request,
+                                         const SurveyFolder& survey, Progress& progress) {
   std::vector<std::string> names;
   for (const Submap& submap : survey.submaps) names.push_back(submap.name);
   SurveyRecord record(task.directory, task.parameters, names);
   SurveyScans scans(survey.submaps, request.settings, request.segmenters);
-  const std::vector<PairTask> pairs = planPairs(survey, request.methods, request.mapping);
-  std::vector<PairResult> results;
+  const std::vector<PairTask> pairs = tasksOf(survey, request);
+  std::vector<core::PairResult> results;
   for (const PairTask& pair : pairs) {
-    const PairResult* known = record.find(pair);
+    const core::PairResult* known = record.find(pair.method, pair.pair.scans);
     if (known == nullptr) {
       progress.begin("align", task.name + " [" + std::to_string(results.size() + 1) + "/" +
-                                  std::to_string(pairs.size()) + "] " + names[pair.pair.reference] + " and " +
-                                  names[pair.pair.moving] + ": " + pair.method);
+                                  std::to_string(pairs.size()) + "] " + names[pair.pair.scans.reference] +
+                                  " and " + names[pair.pair.scans.moving] + ": " + pair.method);
       record.add(alignPair(pair, survey, scans, request.settings));
       known = &record.results().back();
     }
@@ -48,15 +88,15 @@ void writePoses(const std::string& directory, const SurveyFolder& survey,
 Placement placementOf(const char* name, std::size_t voxels, const SurveyFolder& survey,
                       const std::vector<Eigen::Isometry3d>& poses) {
   Placement placement{name, voxels, std::nullopt};
-  if (!survey.truth.empty()) placement.errors = poseErrors(survey, poses);
+  if (!survey.truth.empty()) placement.errors = core::poseErrors(survey.scans, survey.truth, poses);
   return placement;
 }
 
 /// Solves for the poses.
-SurveyPoses posesOf(const SurveyTask& task, const SurveyFolder& survey, const std::vector<PairResult>& pairs,
-                    const SurveyRequest& request) {
+core::SurveyPoses posesOf(const SurveyTask& task, const SurveyFolder& survey,
+                          const std::vector<core::PairResult>& pairs, const std::string& mapping) {
   try {
-    return solveSurvey(survey, pairs, request.mapping, request.trust);
+    return core::solveSurvey(survey.scans, pairs, mapping);
   } catch (const std::logic_error& error) {  // of the core, about covariances and the like
     throw WorkError(task.folder + ": global alignment by the pairs in " + task.directory +
                     "/pairs.csv: " + error.what());
@@ -65,21 +105,30 @@ SurveyPoses posesOf(const SurveyTask& task, const SurveyFolder& survey, const st
   }
 }
 
+/// What there is to tell of the sub-maps before anything is aligned.
+SurveyOutcome begunOutcome(const SurveyTask& task, const SurveyFolder& survey,
+                           const AlignmentSettings& settings) {
+  SurveyOutcome outcome;
+  outcome.name = task.name;
+  outcome.submaps = survey.submaps.size();
+  outcome.left_out = survey.left_out;
+  for (const Submap& submap : survey.submaps) {
+    outcome.voxel_sizes[submap.name] = settings.segments.voxel_size.value_or(submap.voxel_size);
+    if (!submap.origin.isZero()) outcome.origins[submap.name] = asList(submap.origin);
+  }
+  return outcome;
+}
+
 }  // namespace
 
 SurveyOutcome processSurvey(const SurveyTask& task, SurveyRequest& request, Progress& progress) {
   const auto reportReading = [&](std::size_t submap) {
     progress.begin("read", task.name + ": reading sub-map " + std::to_string(submap));
   };
-  const SurveyFolder survey = readSurvey(task.folder, reportReading);
-  SurveyOutcome outcome;
-  outcome.name = task.name;
-  outcome.submaps = survey.submaps.size();
-  for (const Submap& submap : survey.submaps)
-    if (!submap.origin.isZero())
-      outcome.origins[submap.name] = {submap.origin.x(), submap.origin.y(), submap.origin.z()};
+  const SurveyFolder survey = readSurvey(task.folder, request.sigmas, reportReading);
+  SurveyOutcome outcome = begunOutcome(task, survey, request.settings);
   outcome.pairs = alignPairs(task, request, survey, progress);
-  const SurveyPoses poses = posesOf(task, survey, outcome.pairs, request);
+  const core::SurveyPoses poses = posesOf(task, survey, outcome.pairs, request.mapping);
   outcome.edges = poses.edges;
   outcome.rejected_edges = poses.rejected_edges;
   writePoses(task.directory, survey, poses.global);

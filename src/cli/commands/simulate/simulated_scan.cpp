@@ -1,12 +1,23 @@
-#include "commands/simulate/simulated_cloud.h"
+#include "commands/simulate/simulated_scan.h"
 
+#include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include "io/cloud_fields.h"
 #include "io/pcd_cloud.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
+
+/// "tilt_degrees = 90: ..." becomes "--tilt = 90: ...".
+std::string asOption(const std::string& message) {
+  const std::size_t end = message.find(' ');
+  std::string name = message.substr(0, end);
+  if (name == "tilt_degrees") name = "tilt";
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name + message.substr(end);
+}
 
 pcl::PCLPointCloud2 asCloud(const core::SimulatedScan& scan) {
   pcl::PCLPointCloud2 cloud;
@@ -22,6 +33,14 @@ pcl::PCLPointCloud2 asCloud(const core::SimulatedScan& scan) {
 }
 
 }  // namespace
+
+void withOptionNames(const std::function<void()>& simulate) {
+  try {
+    simulate();
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(asOption(error.what()));
+  }
+}
 
 void writeSimulatedScan(const std::string& path, const core::SimulatedScan& scan,
                         const Eigen::Isometry3d& viewpoint, GroundHeights heights) {

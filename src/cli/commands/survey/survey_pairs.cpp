@@ -1,17 +1,23 @@
-#include "commands/survey/survey_pair.h"
+#include "commands/survey/survey_pairs.h"
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "errors.h"
-#include "pcl_fft_ground/core/align/crispness.h"
+#include "io/output_file.h"
+#include "report/report.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
+
+using core::PairResult;
 
 constexpr const char* HEADER =
     "method,kind,reference,moving,status,matches,score,overlap,nx_before,nx_after,delta_nx,overlap_crispness_"
@@ -20,7 +26,7 @@ constexpr const char* HEADER =
     "cxc,cyy,"
     "cyz,cya,cyb,cyc,czz,cza,czb,czc,caa,cab,cac,cbb,cbc,ccc,refusal";
 const std::array<const char*, 2> KINDS{"chain", "other"};
-const std::array<const char*, 3> STATUSES{"aligned", "refused", "unprocessed"};
+const std::array<const char*, 4> STATUSES{"aligned", "refused", "unprocessed", "not-run"};
 
 std::ostream& operator<<(std::ostream& out, const std::optional<double>& value) {
   return value ? out << *value : out;
@@ -90,10 +96,10 @@ PairResult parseLine(const std::string& line, const std::vector<std::string>& na
   FieldReader fields(line);
   PairResult r;
   r.method = fields.word();
-  r.kind = static_cast<PairKind>(fields.oneOf(KINDS));
+  r.kind = static_cast<core::PairKind>(fields.oneOf(KINDS));
   r.reference = fields.oneOf(names);
   r.moving = fields.oneOf(names);
-  r.status = static_cast<PairStatus>(fields.oneOf(STATUSES));
+  r.status = static_cast<core::PairStatus>(fields.oneOf(STATUSES));
   r.matches = fields.count();
   r.score = fields.number();
   r.overlap = fields.number();
@@ -110,22 +116,12 @@ PairResult parseLine(const std::string& line, const std::vector<std::string>& na
   return r;
 }
 
+std::string contentOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 }  // namespace
-
-std::string segmenterOf(const std::string& method) {
-  const std::string suffix = WITH_FALLBACK;
-  const bool has_suffix = method.size() > suffix.size() &&
-                          method.compare(method.size() - suffix.size(), suffix.size(), suffix) == 0;
-  return has_suffix ? method.substr(0, method.size() - suffix.size()) : method;
-}
-
-double PairResult::crispnessChange() const {
-  return core::crispnessChange(nx_before, nx_after);
-}
-
-bool PairResult::isOverlapping() const {
-  return overlap >= LEAST_OVERLAP;
-}
 
 std::string asCsv(const std::vector<PairResult>& results, const std::vector<std::string>& names) {
   std::string csv = std::string(HEADER) + "\n";
@@ -147,6 +143,32 @@ std::vector<PairResult> readPairs(const std::string& path, const std::vector<std
                     "...' is no line of a table of pairs; delete the file to start anew");
   }
   return results;
+}
+
+SurveyRecord::SurveyRecord(const std::string& directory, const nlohmann::ordered_json& parameters,
+                           const std::vector<std::string>& names)
+    : path_(directory + "/pairs.csv"), names_(names) {
+  const std::string parameters_path = directory + "/parameters.json";
+  const std::string wanted = asText(parameters);
+  std::error_code ignored;
+  if (std::filesystem::exists(path_, ignored) && contentOf(parameters_path) == wanted) {
+    results_ = readPairs(path_, names_);
+    return;
+  }
+  std::filesystem::remove(path_, ignored);
+  writeText(parameters_path, wanted);
+}
+
+const PairResult* SurveyRecord::find(const std::string& method, const core::SubmapPair& pair) const {
+  const auto found = std::find_if(results_.begin(), results_.end(), [&](const PairResult& result) {
+    return result.method == method && result.reference == pair.reference && result.moving == pair.moving;
+  });
+  return found == results_.end() ? nullptr : &*found;
+}
+
+void SurveyRecord::add(const PairResult& result) {
+  results_.push_back(result);
+  writeText(path_, asCsv(results_, names_));
 }
 
 }  // namespace pcl_fft_ground::cli
