@@ -41,6 +41,9 @@ TEST_F(AlignCommand, FindsTheTruth) {
   EXPECT_EQ(report["accepted"], true);
   EXPECT_NEAR(report["reference_from_moving"][0][3].get<double>(), found.translation().x(), 1e-9);
   EXPECT_LT(report["crispness"]["delta_nx_percent"], 0);
+  EXPECT_NE(report["version"], "");
+  EXPECT_GE(report["voxel_size"], 0.02);
+  EXPECT_EQ(report["parameters"]["max-tilt"], 4);
   EXPECT_TRUE(std::filesystem::exists(outputOf("alignment.png")));
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "errors.h"
 #include "survey_fixture.h"
 
 namespace pcl_fft_ground::cli {
@@ -74,8 +75,59 @@ TEST_F(SurveyCommand, GoesOnWhereItWasBrokenOff) {
   EXPECT_EQ(resumed.rfind(marked, 0), 0u);
   EXPECT_EQ(std::count(resumed.begin(), resumed.end(), '\n'), std::count(whole.begin(), whole.end(), '\n'));
 
+  std::string parameters = contentOf(outputOf("parameters.json"));
+  const std::string version = json::parse(parameters)["version"];
+  parameters.replace(parameters.find(version), version.size(), version + "1");
+  makeFile("out/parameters.json", parameters);
+  survey({"--methods", "fft", "--quiet"});
+  EXPECT_EQ(contentOf(outputOf("pairs.csv")).find("MARK"), std::string::npos) << "pairs of another version";
+
+  makeFile("out/pairs.csv", marked);
   survey({"--methods", "fft", "--quiet", "--min-matches", "4"});
   EXPECT_EQ(contentOf(outputOf("pairs.csv")).find("MARK"), std::string::npos);
+}
+
+TEST_F(SurveyCommand, WhatIsNoSubmapIsLeftOutAndCounted) {
+  const std::string folder = copyOfTwo("other");
+  std::filesystem::remove(folder + "/truth.csv");
+  std::filesystem::copy_file(submap(2), folder + "/SUBMAP_02.PCD");
+  makeFile("other/broken.pcd", "VERSION 0.7\nnothing of the kind\n");
+  makeFile("other/nowhere.pcd",
+           "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nHEIGHT 1\nDATA ascii\nnan nan nan\nnan 1 2\n");
+  const Printed printed =
+      run(runSurvey, {folder, "-o", output(), "--max-object-size", "1", "--methods", "fft", "--json"});
+  const json report = json::parse(printed.out);
+  EXPECT_EQ(report["submaps"], 3);
+  EXPECT_EQ(report["left_out"], 2);
+  EXPECT_EQ(report["left_out_files"][0]["submap"], "broken.pcd");
+  for (const char* name : {"broken.pcd", "nowhere.pcd"})
+    EXPECT_NE(printed.err.find(name), std::string::npos) << printed.err;
+  EXPECT_EQ(std::count(printed.err.begin(), printed.err.end(), '\n'), 2);
+  EXPECT_EQ(readPoses(outputOf("poses.csv")).size(), 3u);
+  std::filesystem::remove(folder + "/submap_01.pcd");
+  std::filesystem::remove(folder + "/SUBMAP_02.PCD");
+  EXPECT_THROW(run(runSurvey, {folder, "-o", output()}), WorkError);
+}
+
+TEST_F(SurveyCommand, AMethodThatCannotRunSaysWhyAndTheOthersGoOn) {
+  const Printed printed = survey({"--methods", "graph-cut,planar", "--cell-size", "0.002"});
+  EXPECT_NE(printed.out.find("not run: "), std::string::npos) << printed.out;
+  const json report = json::parse(contentOf(outputOf("survey.json")));
+  const json &graph_cut = report["crispness"][0], &planar = report["crispness"][1];
+  EXPECT_EQ(graph_cut["not_run"].get<std::string>().rfind("not run: ", 0), 0u);
+  EXPECT_EQ(graph_cut["unprocessed"], 4);
+  EXPECT_FALSE(planar.contains("not_run"));
+  EXPECT_GT(report["accuracy"][1]["aligned"], 0);
+}
+
+TEST_F(SurveyCommand, VersionVoxelsAndGatesAreReported) {
+  const json report = json::parse(survey({"--methods", "planar", "--json"}).out);
+  EXPECT_NE(report["version"], "");
+  EXPECT_EQ(report["voxel_size"].size(), 4u);
+  EXPECT_GE(report["voxel_size"]["submap_00.pcd"], 0.02);
+  const json& gates = report["parameters"]["alignment"];
+  for (const char* gate : {"max-shift", "max-rise", "max-turn", "max-tilt", "min-score", "max-sigma"})
+    EXPECT_GT(gates[gate], 0) << gate;
 }
 
 TEST_F(SurveyCommand, SeveralFoldersMakeOneTable) {
