@@ -19,7 +19,6 @@
 namespace {
 
 namespace core = pcl_fft_ground::core;
-namespace cli = pcl_fft_ground::cli;
 namespace po = boost::program_options;
 
 struct Request {
