@@ -43,23 +43,25 @@ Heights opened(Heights grid, Eigen::Index reach) {
 
 }  // namespace
 
-Mask openedGround(const ElevationGrid& elevation, const OpeningParameters& parameters) {
+Eigen::ArrayXXf steepnessByOpenings(const ElevationGrid& elevation, const OpeningParameters& parameters) {
   constexpr double GROWTH = 1.5;
   const GridGeometry& cells = elevation.geometry;
   const auto widest =
       static_cast<Eigen::Index>(std::clamp(std::ceil(0.5 * parameters.max_object_size / cells.cell_size), 1.0,
                                            static_cast<double>(std::max(cells.rows, cells.cols))));
+  const auto least_height = static_cast<float>(parameters.least_height);
   Heights surface = elevation.elevation.cast<float>();
-  Mask ground = Mask::Constant(cells.rows, cells.cols, true);
+  Heights steepness = Heights::Zero(cells.rows, cells.cols);
   for (Eigen::Index reach = 1; reach > 0;) {
-    const Heights lower = opened(surface, reach);
-    const double step = parameters.max_slope * static_cast<double>(reach) * cells.cell_size;
-    ground = ground && surface - lower <= static_cast<float>(std::max(step, parameters.least_height));
-    surface = lower;
+    Heights lower = opened(surface, reach);
+    const auto per_metre = static_cast<float>(1 / (static_cast<double>(reach) * cells.cell_size));
+    surface -= lower;
+    steepness = steepness.max((surface > least_height).select(surface * per_metre, 0.0F));
+    surface.swap(lower);
     const auto wider = static_cast<Eigen::Index>(GROWTH * static_cast<double>(reach));
     reach = reach == widest ? 0 : std::min(std::max(reach + 1, wider), widest);
   }
-  return ground;
+  return steepness;
 }
 
 }  // namespace pcl_fft_ground::core

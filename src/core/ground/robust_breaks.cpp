@@ -12,60 +12,164 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-/// Chosen cells and the empty ones between those of them that lie close to each other.
-Mask joined(const Mask& chosen, const Mask& observed) {
-  constexpr Eigen::Index REACH = 2;  // as there may be but one point to four cells
-  const Mask closed = !dilated(!dilated(chosen, REACH), REACH);
-  return chosen || (closed && !observed);
+constexpr double LEAST_HEIGHT = 0.01;  // of an object, as a share of the largest
+constexpr double WAY_IN = 0.3;         // slope of a gentle rim
+
+/// What lies around a region of cells that stand out of the ground.
+struct Rim {
+  double length = 0;   ///< of the region [largest objects]
+  double area = 0;     ///< of the region [largest objects squared]
+  double gentle = 0;   ///< share of the pairs with ground beside that climb gently
+  double higher = 0;   ///< share of all pairs whose other cell, no ground, stands out of the region
+  double border = 0;   ///< cells at the scan's border [largest objects]
+  bool broad = false;  ///< holds a square of a fifth of the largest object
+};
+
+class Rims {
+ public:
+  Rims(const CellMap& land, const Mask& ground, double largest_object)
+      : land_(land),
+        ground_(ground),
+        cell_(land.cells().cell_size / largest_object),
+        least_height_(LEAST_HEIGHT * largest_object),
+        member_(Eigen::ArrayXXi::Zero(ground.rows(), ground.cols())) {}
+
+  /// Half the side of the square that a broad region holds [cells].
+  Eigen::Index breadth() const {
+    constexpr double BREADTH = 0.2;
+    return std::max<Eigen::Index>(static_cast<Eigen::Index>(std::round(0.5 * (BREADTH / cell_ - 1))), 0);
+  }
+
+  /// \param chosen the cells that joined() brought together
+  /// \param cores what is broad enough of them
+  Rim of(const Region& region, const Mask& chosen, const Mask& cores) {
+    ++number_;
+    for (const Eigen::Index cell : region.cells) member_.data()[cell] = number_;
+    Pairs pairs;
+    Rim rim;
+    for (const Eigen::Index cell : region.cells) {
+      rim.broad = rim.broad || cores.data()[cell];
+      if (!chosen.data()[cell]) continue;
+      rim.area += 1;
+      rim.border += isAtBorder(cell) ? 1 : 0;
+      lookAround(cell, pairs);
+    }
+    rim.length = region.length * cell_;
+    rim.area *= cell_ * cell_;
+    rim.border *= cell_;
+    rim.gentle = pairs.gentle / std::max(pairs.ground, 1.0);
+    rim.higher = pairs.higher / std::max(pairs.all, 1.0);
+    return rim;
+  }
+
+ private:
+  struct Pairs {
+    double all = 0, ground = 0, gentle = 0, higher = 0;
+  };
+
+  bool isAtBorder(Eigen::Index cell) const {
+    constexpr Eigen::Index OUTER = 2;
+    const Eigen::Index rows = ground_.rows(), cols = ground_.cols(), i = cell % rows, j = cell / rows;
+    return i < OUTER || j < OUTER || i >= rows - OUTER || j >= cols - OUTER;
+  }
+
+  void lookAround(Eigen::Index cell, Pairs& pairs) const {
+    const Eigen::Index rows = ground_.rows(), cols = ground_.cols(), reach = land_.reach();
+    const Eigen::Index row = cell % rows, col = cell / rows;
+    for (Eigen::Index j = std::max<Eigen::Index>(col - reach, 0); j <= std::min(col + reach, cols - 1); ++j)
+      for (Eigen::Index i = std::max<Eigen::Index>(row - reach, 0); i <= std::min(row + reach, rows - 1);
+           ++i) {
+        const Eigen::Index other = i + j * rows;
+        if (member_.data()[other] == number_ || !land_.isObserved(other)) continue;
+        const Eigen::Vector3d offset = land_.point(other) - land_.point(cell);
+        const double climb = WAY_IN * offset.head<2>().norm();
+        ++pairs.all;
+        if (ground_.data()[other]) {
+          ++pairs.ground;
+          if (std::abs(offset.z()) <= climb + 0.25 * least_height_) ++pairs.gentle;
+        } else if (offset.z() > climb + least_height_) {
+          ++pairs.higher;
+        }
+      }
+  }
+
+  const CellMap& land_;
+  const Mask& ground_;
+  double cell_, least_height_;
+  Eigen::ArrayXXi member_;  // number of the region that was looked at last
+  int number_ = 0;
+};
+
+/// Large enough to prove that the land breaks: hedges and rows of cars are not.
+bool isLarge(double length, double area) {
+  return length > 1.25 && area > 0.12;
 }
 
-/// The regions of a mask that are longer and cover more than the largest object, and are not thin.
-Mask largeRegions(const Mask& mask, double object_cells) {
-  constexpr double LONGER = 1.25, BREADTH = 0.2;  // of the largest object
-  const auto reach = static_cast<Eigen::Index>(std::round(0.5 * (BREADTH * object_cells - 1)));
-  return regionsAround(mask, eroded(mask, std::max<Eigen::Index>(reach, 0)),
-                       {LONGER * object_cells, object_cells * object_cells});
+/// Land, with certainty: nothing else is as large, has such a rim and carries things, or goes on beyond the
+/// scan.
+bool provesABreak(const Rim& rim) {
+  const bool carries = rim.gentle > 0.2 && (rim.higher > 0.1 || rim.border > 0);
+  const bool goes_on = rim.border > 0.3 && rim.higher > 0.5 && rim.gentle > 0.05;
+  return isLarge(rim.length, rim.area) && (carries || goes_on);
+}
+
+/// Too large for an object and too broad for a wall, whatever its rim.
+bool isNoObject(const Rim& rim) {
+  return rim.length > 1.25 && rim.area >= 1 && rim.broad;
+}
+
+/// Land, where the land is known to break: it does so again in smaller pieces.
+bool isLand(const Rim& rim) {
+  return provesABreak(rim) || isNoObject(rim) || (rim.gentle > 0.2 && rim.area > 0.005 && rim.length > 0.2);
+}
+
+bool anyLargeRegion(const Mask& cells, double cell) {
+  for (const Region& region : regionsOf(cells))
+    if (isLarge(region.length * cell, static_cast<double>(region.cells.size()) * cell * cell)) return true;
+  return false;
 }
 
 }  // namespace
 
-Mask groundAboveBreaks(const ElevationGrid& elevation, const Mask& ground, const ObjectSize& object) {
-  constexpr double GENTLE = 0.15, STEEP = 0.3;  // slopes
-  constexpr Eigen::Index BESIDE = 2;            // cells
+Mask groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, const Mask& ground,
+                       double largest_object, const std::optional<double>& max_slope) {
+  constexpr float GENTLE = 0.15F, PROOF = 0.3F, BROKEN = 0.4F;  // slopes
   const Mask& observed = elevation.observed;
-  const double object_cells = object.largest / elevation.geometry.cell_size;
-  const Mask above = observed && !ground;
-  const Mask none = Mask::Constant(above.rows(), above.cols(), false);
-  if (!largeRegions(joined(above, observed), object_cells).any()) return none;
+  const Mask above = observed && !ground, none = Mask::Constant(above.rows(), above.cols(), false);
+  if (!max_slope && !anyLargeRegion(joined(above, observed), land.cells().cell_size / largest_object))
+    return none;
 
-  const auto standing = [&](double slope) -> Mask {
-    return above && openedGround(elevation, {object.largest, slope, object.least_height});
+  const Eigen::ArrayXXf steepness =
+      steepnessByOpenings(elevation, {largest_object, LEAST_HEIGHT * largest_object});
+  Rims rims(land, ground, largest_object);
+  const auto landUpTo = [&](float slope, bool (*judge)(const Rim&)) {
+    const Mask chosen = above && steepness <= slope;
+    const Mask filled = joined(chosen, observed);
+    const Mask cores = eroded(filled, rims.breadth());
+    Mask result = none;
+    for (const Region& region : regionsOf(filled))
+      if (judge(rims.of(region, chosen, cores)))
+        for (const Eigen::Index cell : region.cells) result.data()[cell] = chosen.data()[cell];
+    return result;
   };
-  const Mask gentle = standing(GENTLE);
-  const Mask large = largeRegions(joined(gentle, observed), object_cells);
-  if (!large.any()) return none;
-  const Mask steep = standing(STEEP) && !(gentle && large);
-  const Mask beside = regionsAround(joined(steep, observed), dilated(large, BESIDE), {object_cells});
-  return (gentle && large) || (steep && beside);
+  if (max_slope) return landUpTo(static_cast<float>(*max_slope), isLand);
+  const Mask proof = landUpTo(PROOF, provesABreak) || landUpTo(GENTLE, isNoObject);
+  return proof.any() ? proof || landUpTo(BROKEN, isLand) : none;
 }
 
-void followGround(const ElevationGrid& elevation, const Mask& ground, double spread, double deepest,
-                  Eigen::ArrayXXd& surface) {
+void followGround(const CellMap& land, const Mask& ground, double spread, Eigen::ArrayXXd& surface) {
   constexpr double SPREADS = 3;
   // A cell's height is that of its lowest points, the surface lies amid them.
   std::vector<float> residuals;
   RadixSort sort;
-  for (Eigen::Index n = 0; n < surface.size(); ++n) {
-    const double residual = elevation.elevation.data()[n] - surface.data()[n];
-    if (ground.data()[n] && std::abs(residual) < 2 * SPREADS * spread)
-      residuals.push_back(static_cast<float>(residual));
-  }
+  const auto residualOf = [&](Eigen::Index cell) { return land.point(cell).z() - surface.data()[cell]; };
+  for (Eigen::Index n = 0; n < surface.size(); ++n)
+    if (ground.data()[n] && std::abs(residualOf(n)) < 2 * SPREADS * spread)
+      residuals.push_back(static_cast<float>(residualOf(n)));
   const double offset = medianSpread(residuals, sort).centre;
-  for (Eigen::Index n = 0; n < surface.size(); ++n) {
-    const double residual = elevation.elevation.data()[n] - surface.data()[n] - offset;
-    if (ground.data()[n] && std::abs(residual) > SPREADS * spread && residual > -deepest)
-      surface.data()[n] += residual;
-  }
+  for (Eigen::Index n = 0; n < surface.size(); ++n)
+    if (ground.data()[n] && std::abs(residualOf(n) - offset) > SPREADS * spread)
+      surface.data()[n] += residualOf(n) - offset;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -8,6 +8,20 @@
 namespace pcl_fft_ground::core {
 namespace {
 
+std::vector<std::int32_t> cellsOf(const PointsView& points, const GridGeometry& cells) {
+  const double per_metre = 1 / cells.cell_size, x = cells.origin.x(), y = cells.origin.y();
+  const auto rows = static_cast<std::int32_t>(cells.rows), cols = static_cast<std::int32_t>(cells.cols);
+  std::vector<std::int32_t> result(static_cast<std::size_t>(points.cols()));
+  const float* p = points.data();
+  for (std::int32_t& cell : result) {
+    const auto i = static_cast<std::int32_t>((static_cast<double>(p[0]) - x) * per_metre);
+    const auto j = static_cast<std::int32_t>((static_cast<double>(p[1]) - y) * per_metre);
+    cell = std::min(i, rows - 1) + std::min(j, cols - 1) * rows;
+    p += 3;
+  }
+  return result;
+}
+
 /// Lower, or at the same height and before in x and y: any order that is not that of the points.
 bool isBelow(const float* a, const float* b) {
   if (a[2] != b[2]) return a[2] < b[2];
@@ -120,6 +134,44 @@ Eigen::Vector2d centreOf(const SortedPoints& points, std::size_t n) {
 
 }  // namespace
 
+SortedPoints::SortedPoints(const PointsView& points, const Bounds& bounds, const GridGeometry& cells)
+    : bounds_(bounds), cells_(cells), positions_(3, points.cols()) {
+  const std::vector<std::int32_t> cell_of = cellsOf(points, cells);
+  std::vector<std::uint32_t> next(static_cast<std::size_t>(cells.rows * cells.cols), 0);
+  for (const std::int32_t cell : cell_of) ++next[static_cast<std::size_t>(cell)];
+  std::uint32_t begin = 0;
+  for (std::size_t cell = 0; cell < next.size(); ++cell) {
+    const std::uint32_t count = next[cell];
+    next[cell] = begin;
+    if (count == 0) continue;
+    observed_.push_back(static_cast<std::int32_t>(cell));
+    begins_.push_back(begin);
+    begin += count;
+  }
+  begins_.push_back(begin);
+  const float* from = points.data();
+  float* const positions = positions_.data();
+  for (const std::int32_t cell : cell_of) {
+    float* const to = positions + 3 * next[static_cast<std::size_t>(cell)]++;
+    for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+    from += 3;
+  }
+}
+
+CellMap::CellMap(const CellPoints& points, const GridGeometry& cells)
+    : points_(points), cells_(cells), number_(decltype(number_)::Constant(cells.rows, cells.cols, -1)) {
+  for (std::size_t n = 0; n < points.cells.size(); ++n)
+    number_.data()[points.cells[n]] = static_cast<std::int32_t>(n);
+}
+
+double CellMap::density() const {
+  return static_cast<double>(points_.cells.size()) / static_cast<double>(number_.size());
+}
+
+Eigen::Index CellMap::reach() const {
+  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::round(1 / std::sqrt(density()))));
+}
+
 CellPoints representativePoints(const SortedPoints& points, CellStatistic statistic) {
   if (statistic == CellStatistic::LOWEST) return lowestPoints(points);
   constexpr double ANY = std::numeric_limits<double>::infinity();
@@ -131,20 +183,43 @@ CellPoints meanGroundPoints(const SortedPoints& points, const GroundBand& band) 
                     [&](std::size_t n) { return Tangent(band, centreOf(points, n)); });
 }
 
-Spread spreadAround(const SortedPoints& points, const GroundBand& band) {
+std::vector<float> heightsIn(const SortedPoints& points, const GroundBand& band, const Mask* left_out) {
   constexpr Eigen::Index ENOUGH = 20000;
   const auto one_in = static_cast<std::size_t>(std::max<Eigen::Index>(points.positions().cols() / ENOUGH, 1));
   std::vector<float> heights;
   heights.reserve(2 * ENOUGH);
   for (std::size_t n = 0; n < points.size(); n += one_in) {
+    if (left_out != nullptr && left_out->data()[points.cell(n)]) continue;
     const Tangent tangent(band, centreOf(points, n));
     for (Eigen::Index k = points.begin(n); k < points.end(n); ++k) {
       const double height = tangent.heightAbove(points.positions().data() + 3 * k);
       if (height >= band.low && height <= band.high) heights.push_back(static_cast<float>(height));
     }
   }
-  RadixSort sort;
-  return medianSpread(heights, sort);
+  return heights;
+}
+
+Eigen::ArrayXXf lowestHeights(const SortedPoints& points, const GroundBand& band) {
+  Eigen::ArrayXXf lowest = Eigen::ArrayXXf::Zero(points.cells().rows, points.cells().cols);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Tangent tangent(band, centreOf(points, n));
+    double least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index k = points.begin(n); k < points.end(n); ++k)
+      least = std::min(least, tangent.heightAbove(points.positions().data() + 3 * k));
+    lowest.data()[points.cell(n)] = static_cast<float>(least);
+  }
+  return lowest;
+}
+
+Mask cellsReachingAbove(const SortedPoints& points, const GroundBand& band) {
+  Mask above = Mask::Constant(points.cells().rows, points.cells().cols, false);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Tangent tangent(band, centreOf(points, n));
+    for (Eigen::Index k = points.begin(n); k < points.end(n); ++k)
+      if (tangent.heightAbove(points.positions().data() + 3 * k) > band.high)
+        above.data()[points.cell(n)] = true;
+  }
+  return above;
 }
 
 ElevationGrid elevationOf(const CellPoints& points, const GridGeometry& cells) {

@@ -34,11 +34,9 @@ double chooseCellSize(const std::optional<double>& given, double max_object_size
 
 double chooseFinestWavelength(const RobustParameters& parameters, double max_object_size, double cell_size,
                               Choices& choices) {
-  constexpr double LEAST_CELLS = 3, PER_OBJECT = 10, PER_OBJECT_WITH_BREAKS = 12.5;
-  const double per_object = parameters.max_slope ? PER_OBJECT_WITH_BREAKS : PER_OBJECT;
-  return choose(parameters.finest_wavelength, std::max(max_object_size / per_object, LEAST_CELLS * cell_size),
-                "finest_wavelength",
-                "a tenth of the largest object (less where land breaks), at least three cells", choices);
+  constexpr double LEAST_CELLS = 3, PER_OBJECT = 10;
+  return choose(parameters.finest_wavelength, std::max(max_object_size / PER_OBJECT, LEAST_CELLS * cell_size),
+                "finest_wavelength", "a tenth of the largest object, at least three cells", choices);
 }
 
 /// Between points that lie so far apart [m] the ground is not known: on a slope it may differ by the slope
@@ -67,20 +65,24 @@ RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bo
              "walls share cells with the ground; its points' mean takes over once it is found", choices);
   plan.finest_wavelength =
       chooseFinestWavelength(parameters, plan.max_object_size, plan.cells.cell_size, choices);
-  plan.slope = parameters.max_slope ? *parameters.max_slope / 3 : SLOPE;
+  plan.slope = SLOPE;
   return plan;
 }
 
 void chooseTolerances(const RobustParameters& parameters, Eigen::Index points, RobustGround& ground) {
-  constexpr double SCALES = 3, SPACINGS = 1.25, SHARE_OF_OBJECT = 0.0098;
-  constexpr double LEAST_DEPTH = 1, DEPTH_SCALES = 10;
-  const double by_noise = SCALES * ground.scale, by_size = SHARE_OF_OBJECT * ground.max_object_size;
-  ground.tolerance = choose(
-      parameters.height_tolerance, std::max(by_noise, by_size), "height_tolerance",
-      by_noise > by_size ? "three times the spread of the ground points" : "0.98 % of the largest object",
-      ground.choices);
+  constexpr double SCALES = 3, MORE_SCALES = 5, SPACINGS = 1.25;
+  constexpr double LEAST_DEPTH = 0.05, DEPTH_SCALES = 10;
+  const double usual = USUAL_TOLERANCE * ground.max_object_size;
+  const double noise = SCALES * ground.scale, more_noise = MORE_SCALES * ground.scale;
+  ground.tolerance =
+      choose(parameters.height_tolerance, std::max(noise, std::min(usual, more_noise)), "height_tolerance",
+             more_noise < usual ? "five times the spread of the ground points"
+             : noise < usual    ? "0.98 % of the largest object"
+                                : "three times the spread of the ground points",
+             ground.choices);
+  ground.most_tolerance = parameters.height_tolerance.value_or(std::max(noise, usual));
   ground.slope_tolerance = SPACINGS * pointSpacing(ground.elevation, points);
-  ground.depth_tolerance = std::max(LEAST_DEPTH, DEPTH_SCALES * ground.scale);
+  ground.depth_tolerance = std::max(LEAST_DEPTH * ground.max_object_size, DEPTH_SCALES * ground.scale);
 }
 
 }  // namespace pcl_fft_ground::core

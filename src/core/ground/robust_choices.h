@@ -7,6 +7,9 @@
 
 namespace pcl_fft_ground::core {
 
+/// Ground usually lies closer to the surface than this share of the largest object.
+constexpr double USUAL_TOLERANCE = 0.0098;
+
 /// What is fitted, all values given or chosen.
 struct RobustPlan {
   double extent = 0;           ///< smaller horizontal extent of the points [m]

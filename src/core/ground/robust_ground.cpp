@@ -4,17 +4,20 @@
 #include <cmath>
 #include <utility>
 
-#include "grid/openings.h"
 #include "ground/robust_breaks.h"
 #include "ground/robust_choices.h"
+#include "ground/robust_growth.h"
+#include "ground/robust_points.h"
 #include "ground/robust_surface.h"
 #include "scan/point_sample.h"
 
 namespace pcl_fft_ground::core {
 namespace {
 
+constexpr double LEAST_DEPTH = 0.05;
+
 /// Coarse to fine from the lower envelope: the largest object first, then shorter wavelengths.
-std::vector<double> growGround(RobustSurface& surface, double coarsest, double finest) {
+std::vector<double> growFromBelow(RobustSurface& surface, double coarsest, double finest) {
   const double octaves = std::round(std::log2(coarsest / finest));
   const double ratio = std::pow(coarsest / finest, 1 / std::max(octaves, 1.0));
   surface.startBelowObjects(coarsest);
@@ -35,70 +38,48 @@ std::vector<bool> pointsIn(const Mask& cells, const CellPoints& points) {
   return chosen;
 }
 
-/// From the cells that progressive openings leave, at the finest wavelength alone: where land breaks, a
-/// surface of a longer one loses the terraces.
-std::vector<double> openGround(RobustSurface& surface, const ElevationGrid& elevation,
-                               const OpeningParameters& opening, double finest) {
-  surface.startFrom(pointsIn(openedGround(elevation, opening), surface.points()), finest);
-  surface.refine(finest);
-  return {finest};
-}
-
-/// Cells that hold a point no higher than three scales above the surface.
-Mask cellsOnSurface(const RobustSurface& surface, const GridGeometry& cells) {
-  constexpr double GROUND_SCALES = 3;
-  const double highest = surface.spread().centre + GROUND_SCALES * surface.spread().scale;
-  Mask on_surface = Mask::Constant(cells.rows, cells.cols, false);
+/// Cells whose point lies so far below and above the surface [m].
+Mask cellsAtSurface(const RobustSurface& surface, const GridGeometry& cells, double low, double high) {
+  Mask at_surface = Mask::Constant(cells.rows, cells.cols, false);
   const CellPoints& points = surface.points();
   for (std::size_t n = 0; n < points.positions.size(); ++n) {
     const Eigen::Vector3d& p = points.positions[n];
-    const double height = surface.grid().value(surface.heights(), surface.grid().at(p.x(), p.y()));
-    on_surface.data()[points.cells[n]] = p.z() - height <= highest;
+    const double height = p.z() - surface.grid().value(surface.heights(), surface.grid().at(p.x(), p.y()));
+    at_surface.data()[points.cells[n]] = height >= low && height <= high;
   }
-  return on_surface;
+  return at_surface;
 }
 
-/// Fits the surface again where there is ground above breaks.
-/// \return all ground cells; none where the land does not break
-Mask bendAtBreaks(RobustSurface& surface, const ElevationGrid& elevation, const ObjectSize& object,
-                  double finest) {
-  const Mask ground = cellsOnSurface(surface, elevation.geometry);
-  const Mask above = groundAboveBreaks(elevation, ground, object);
-  if (!above.any()) return above;
-  surface.startFrom(pointsIn(ground || above, surface.points()), finest);
+/// The ground that the surface has not reached, and the surface through it.
+/// \return all ground cells; none if the surface has reached them all
+Mask completeGround(RobustSurface& surface, const RobustPlan& plan, const ElevationGrid& elevation,
+                    const std::optional<double>& max_slope) {
+  constexpr int ROUNDS = 2;
+  constexpr double ABOVE = 3, BELOW = 8;  // scales: outliers below would wreck the fit
+  constexpr double LEAST_HEIGHT = 0.01;
+  const double size = plan.max_object_size;
+  const CellMap land(surface.points(), plan.cells);
+  const auto band = [&](double low, double high) {
+    const Spread spread = surface.spread();
+    return cellsAtSurface(surface, plan.cells, spread.centre - low * spread.scale,
+                          std::max(spread.centre + ABOVE * spread.scale, high));
+  };
+  Mask gained = Mask::Constant(plan.cells.rows, plan.cells.cols, false);
+  for (int round = 0; round < ROUNDS; ++round) {
+    const Mask ground = band(BELOW, 0) || gained;
+    const Mask more = continuedGround(land, ground, surface.spread().scale, size);
+    if (!more.any()) break;
+    gained = gained || more;
+    surface.refit(pointsIn(ground || gained, surface.points()));
+  }
+  const Mask ground = cellsAtSurface(surface, plan.cells, -LEAST_DEPTH * size,
+                                     std::max(surface.spread().centre + ABOVE * surface.spread().scale,
+                                              LEAST_HEIGHT * size)) ||
+                      gained;
+  const Mask above = groundAboveBreaks(land, elevation, ground, size, max_slope);
+  if (!above.any()) return gained.any() ? band(BELOW, 0) || gained : gained;
+  surface.refit(pointsIn(ground || above, surface.points()));
   return ground || above;
-}
-
-/// How the ground was found.
-struct Search {
-  std::vector<double> wavelengths;
-  Mask broken;  ///< all ground cells, where the land breaks; otherwise none
-};
-
-Search findGround(RobustSurface& surface, const RobustPlan& plan, const ElevationGrid& elevation,
-                  const std::optional<double>& max_slope) {
-  constexpr double LEAST_HEIGHT = 0.01;  // of an object, as a share of the largest
-  const double size = plan.max_object_size, finest = plan.finest_wavelength;
-  if (max_slope) return {openGround(surface, elevation, {size, *max_slope, LEAST_HEIGHT * size}, finest), {}};
-  std::vector<double> wavelengths = growGround(surface, std::max(size, finest), finest);
-  return {std::move(wavelengths), bendAtBreaks(surface, elevation, {size, LEAST_HEIGHT * size}, finest)};
-}
-
-/// Fits the surface to the ground points themselves: a cell may hold both ground and the foot of an object,
-/// and its lowest points lie below the middle of the noise.
-/// \return the spread of the points around it
-double fitGroundPoints(RobustSurface& surface, const SortedPoints& points) {
-  constexpr double BAND = 3;  // scales
-  const Spread cells = surface.spread();
-  // Of the cells the lowest points were looked at: first find where all points lie.
-  const Spread points_before =
-      spreadAround(points, {surface.grid(), surface.heights(), cells.centre - 3 * BAND * cells.scale,
-                            cells.centre + BAND * cells.scale});
-  const double band = BAND * points_before.scale;
-  const CellPoints ground = meanGroundPoints(
-      points, {surface.grid(), surface.heights(), points_before.centre - band, points_before.centre + band});
-  if (!ground.positions.empty()) surface.fitTo(ground);
-  return spreadAround(points, {surface.grid(), surface.heights(), -2 * band, 2 * band}).scale;
 }
 
 /// Distance [m] of every cell from the nearest one that holds ground.
@@ -147,14 +128,20 @@ RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometr
   RobustSurface surface(std::move(cell_points), plan.cells,
                         {plan.finest_wavelength, parameters.filter_order, parameters.passband_ripple},
                         {LEAST_SCALE * plan.max_object_size, plan.slope}, PRECISION * plan.max_object_size);
-  Search search = findGround(surface, plan, ground.elevation, parameters.max_slope);
-  ground.wavelengths = std::move(search.wavelengths);
-  ground.scale = fitGroundPoints(surface, sorted);
+  ground.wavelengths =
+      growFromBelow(surface, std::max(plan.max_object_size, plan.finest_wavelength), plan.finest_wavelength);
+  const CellPoints lowest = surface.points();
+  const Mask completed = completeGround(surface, plan, ground.elevation, parameters.max_slope);
+  const GroundPoints found = fitGroundPoints(surface, sorted, USUAL_TOLERANCE * plan.max_object_size);
+  ground.scale = found.spread;
   describeSurface(surface, plan, ground);
   chooseTolerances(parameters, points.cols(), ground);
-  if (search.broken.any())
-    followGround(ground.elevation, search.broken, ground.scale, ground.depth_tolerance,
-                 ground.surface.height);
+  ground.lowest = lowestHeights(sorted, {surface.grid(), surface.heights(), 0, 0});
+  if (completed.any()) {
+    const Eigen::ArrayXXd smooth = ground.surface.height;
+    followGround(CellMap(lowest, plan.cells), completed, ground.scale, ground.surface.height);
+    ground.lowest -= (ground.surface.height - smooth).cast<float>();
+  }
   return ground;
 }
 

@@ -1,48 +1,88 @@
 #include "ground/robust_points.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ground/robust_regions.h"
+#include "scan/radix_sort.h"
 
 namespace pcl_fft_ground::core {
 namespace {
 
-std::vector<std::int32_t> cellsOf(const PointsView& points, const GridGeometry& cells) {
-  const double per_metre = 1 / cells.cell_size, x = cells.origin.x(), y = cells.origin.y();
-  const auto rows = static_cast<std::int32_t>(cells.rows), cols = static_cast<std::int32_t>(cells.cols);
-  std::vector<std::int32_t> result(static_cast<std::size_t>(points.cols()));
-  const float* p = points.data();
-  for (std::int32_t& cell : result) {
-    const auto i = static_cast<std::int32_t>((static_cast<double>(p[0]) - x) * per_metre);
-    const auto j = static_cast<std::int32_t>((static_cast<double>(p[1]) - y) * per_metre);
-    cell = std::min(i, rows - 1) + std::min(j, cols - 1) * rows;
-    p += 3;
+constexpr double BAND = 3;  // spreads
+
+GroundBand bandAround(const RobustSurface& surface, double low, double high) {
+  return {surface.grid(), surface.heights(), low, high};
+}
+
+Spread spreadIn(const SortedPoints& points, const GroundBand& band) {
+  RadixSort sort;
+  std::vector<float> heights = heightsIn(points, band);
+  return medianSpread(heights, sort);
+}
+
+void fitToMeans(RobustSurface& surface, const SortedPoints& points, double low, double high) {
+  const CellPoints ground = meanGroundPoints(points, bandAround(surface, low, high));
+  if (!ground.positions.empty()) surface.fitTo(ground);
+}
+
+/// Third moment over the 3/2 power of the second one.
+double skewnessOf(const std::vector<float>& values) {
+  double sum = 0, squares = 0, cubes = 0;
+  for (const float value : values) sum += static_cast<double>(value);
+  const double mean = sum / std::max(1.0, static_cast<double>(values.size()));
+  for (const float value : values) {
+    const double d = static_cast<double>(value) - mean;
+    squares += d * d, cubes += d * d * d;
   }
-  return result;
+  const auto count = static_cast<double>(values.size());
+  return squares > 0 ? cubes / count / std::pow(squares / count, 1.5) : 0;
+}
+
+/// Noise is symmetric where nothing stands; what grows there makes it skewed.
+bool growsOnTheGround(const RobustSurface& surface, const SortedPoints& points, const Spread& spread,
+                      double usual) {
+  constexpr double LEAST_SKEWNESS = 0.1;  // forests .12 to 1.6, other scans at most .09
+  if (BAND * spread.scale <= usual) return false;
+  const double reach = BAND * spread.scale;
+  const GroundBand band = bandAround(surface, spread.centre - reach, spread.centre + reach);
+  const Mask standing = dilated(cellsReachingAbove(points, band), 1);
+  return skewnessOf(heightsIn(points, band, &standing)) >= LEAST_SKEWNESS;
+}
+
+/// One-sided fits, each with the spread of what lies below the surface.
+/// \return the spread
+double sinkThroughPlants(RobustSurface& surface, const SortedPoints& points, double spread, double usual) {
+  constexpr int ITERATIONS = 15;
+  constexpr double ENOUGH = 0.6, LOW = 3, HIGH = 0.7, DEEPEST = 6, NORMAL_FROM_MEDIAN = 1.4826;
+  for (int n = 0; n < ITERATIONS && BAND * spread > ENOUGH * usual; ++n) {
+    std::vector<float> depths = heightsIn(points, bandAround(surface, -DEEPEST * spread, 0));
+    if (depths.empty()) break;
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    spread = std::min(spread, -NORMAL_FROM_MEDIAN * static_cast<double>(*middle));
+    fitToMeans(surface, points, -LOW * spread, HIGH * spread);
+  }
+  return spread;
 }
 
 }  // namespace
 
-SortedPoints::SortedPoints(const PointsView& points, const Bounds& bounds, const GridGeometry& cells)
-    : bounds_(bounds), cells_(cells), positions_(3, points.cols()) {
-  const std::vector<std::int32_t> cell_of = cellsOf(points, cells);
-  std::vector<std::uint32_t> next(static_cast<std::size_t>(cells.rows * cells.cols), 0);
-  for (const std::int32_t cell : cell_of) ++next[static_cast<std::size_t>(cell)];
-  std::uint32_t begin = 0;
-  for (std::size_t cell = 0; cell < next.size(); ++cell) {
-    const std::uint32_t count = next[cell];
-    next[cell] = begin;
-    if (count == 0) continue;
-    observed_.push_back(static_cast<std::int32_t>(cell));
-    begins_.push_back(begin);
-    begin += count;
+GroundPoints fitGroundPoints(RobustSurface& surface, const SortedPoints& points, double usual) {
+  const Spread cells = surface.spread();
+  // Of the cells the lowest points were looked at: first find where all points lie.
+  const Spread before = spreadIn(
+      points, bandAround(surface, cells.centre - 3 * BAND * cells.scale, cells.centre + BAND * cells.scale));
+  const double band = BAND * before.scale;
+  fitToMeans(surface, points, before.centre - band, before.centre + band);
+  const Spread fitted = spreadIn(points, bandAround(surface, -2 * band, 2 * band));
+  GroundPoints ground{fitted.scale};
+  if (growsOnTheGround(surface, points, fitted, usual)) {
+    ground.spread = sinkThroughPlants(surface, points, fitted.scale, usual);
+    ground.sunk = true;
   }
-  begins_.push_back(begin);
-  const float* from = points.data();
-  float* const positions = positions_.data();
-  for (const std::int32_t cell : cell_of) {
-    float* const to = positions + 3 * next[static_cast<std::size_t>(cell)]++;
-    for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
-    from += 3;
-  }
+  return ground;
 }
 
 }  // namespace pcl_fft_ground::core

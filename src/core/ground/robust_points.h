@@ -1,51 +1,21 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
-#include "pcl_fft_ground/core/grid/elevation_grid.h"
-#include "pcl_fft_ground/core/scan/point_statistics.h"
-#include "pcl_fft_ground/core/scan/points.h"
+#include "ground/robust_cells.h"
+#include "ground/robust_surface.h"
 
 namespace pcl_fft_ground::core {
 
-/** The points of a scan cell by cell: what is read again and again comes in one run.
- *
- * The order within a cell is that of the input; no result should depend on it.
- */
-class SortedPoints {
- public:
-  /// \param cells a grid around the bounds of the points
-  SortedPoints(const PointsView& points, const Bounds& bounds, const GridGeometry& cells);
-
-  const Bounds& bounds() const { return bounds_; }
-  const GridGeometry& cells() const { return cells_; }
-  const Points& positions() const { return positions_; }
-
-  /// Number of cells that hold points.
-  std::size_t size() const { return observed_.size(); }
-
-  /// Storage index of the n-th cell that holds points.
-  Eigen::Index cell(std::size_t n) const { return observed_[n]; }
-
-  /// The first of its points; end() of one is begin() of the next.
-  Eigen::Index begin(std::size_t n) const { return begins_[n]; }
-  Eigen::Index end(std::size_t n) const { return begins_[n + 1]; }
-
-  /// Lower corner of the n-th cell [m].
-  Eigen::Vector2d corner(std::size_t n) const {
-    const Eigen::Index i = observed_[n] % cells_.rows, j = observed_[n] / cells_.rows;
-    return cells_.origin + cells_.cell_size * Eigen::Vector2d(static_cast<double>(i), static_cast<double>(j));
-  }
-
- private:
-  Bounds bounds_;
-  GridGeometry cells_;
-  Points positions_;
-  std::vector<std::int32_t> observed_;
-  std::vector<Eigen::Index> begins_;
+/// How the points of the ground lie about the surface [m].
+struct GroundPoints {
+  double spread = 0;  ///< standard deviation, whatever stands on the ground
+  bool sunk = false;  ///< the surface was sunk through what grows on the ground
 };
+
+/** Fits the surface to the ground points themselves: a cell may hold both ground and the foot of an object,
+ * and its lowest points lie below the middle of the noise. Where the lowest points are plants, which shows in
+ * a wide and skewed spread, the surface sinks through them.
+ * \param usual what a spread of ground is expected to stay below, times three [m]
+ */
+GroundPoints fitGroundPoints(RobustSurface& surface, const SortedPoints& points, double usual);
 
 }  // namespace pcl_fft_ground::core

@@ -8,28 +8,21 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-using Cell = std::pair<Eigen::Index, Eigen::Index>;
-
-struct Region {
-  std::vector<Cell> cells;
-  double length = 0;  ///< diagonal of the bounding box [cells]
-};
-
 /// The region around a cell, taken out of the mask.
-Region takeRegion(Mask& mask, const Cell& start) {
+Region takeRegion(Mask& mask, Eigen::Index start) {
+  const Eigen::Index rows = mask.rows(), cols = mask.cols();
   Region region{{start}};
-  mask(start.first, start.second) = false;
-  Cell low = start, high = start;
+  mask.data()[start] = false;
+  Eigen::Array2<Eigen::Index> low(start % rows, start / rows), high = low;
   for (std::size_t n = 0; n < region.cells.size(); ++n) {
-    const auto [row, col] = region.cells[n];
-    low = {std::min(low.first, row), std::min(low.second, col)};
-    high = {std::max(high.first, row), std::max(high.second, col)};
-    for (Eigen::Index j = std::max<Eigen::Index>(col - 1, 0); j <= std::min(col + 1, mask.cols() - 1); ++j)
-      for (Eigen::Index i = std::max<Eigen::Index>(row - 1, 0); i <= std::min(row + 1, mask.rows() - 1); ++i)
-        if (std::exchange(mask(i, j), false)) region.cells.emplace_back(i, j);
+    const Eigen::Index row = region.cells[n] % rows, col = region.cells[n] / rows;
+    low = low.min(Eigen::Array2<Eigen::Index>(row, col));
+    high = high.max(Eigen::Array2<Eigen::Index>(row, col));
+    for (Eigen::Index j = std::max<Eigen::Index>(col - 1, 0); j <= std::min(col + 1, cols - 1); ++j)
+      for (Eigen::Index i = std::max<Eigen::Index>(row - 1, 0); i <= std::min(row + 1, rows - 1); ++i)
+        if (std::exchange(mask(i, j), false)) region.cells.push_back(i + j * rows);
   }
-  region.length = std::hypot(static_cast<double>(high.first - low.first + 1),
-                             static_cast<double>(high.second - low.second + 1));
+  region.length = (high - low + 1).cast<double>().matrix().norm();
   return region;
 }
 
@@ -60,17 +53,17 @@ Mask eroded(const Mask& mask, Eigen::Index reach) {
   return result;
 }
 
-Mask regionsAround(Mask mask, const Mask& cores, const RegionSize& size) {
-  Mask kept = Mask::Constant(mask.rows(), mask.cols(), false);
-  for (Eigen::Index j = 0; j < mask.cols(); ++j)
-    for (Eigen::Index i = 0; i < mask.rows(); ++i) {
-      if (!mask(i, j) || !cores(i, j)) continue;
-      const Region region = takeRegion(mask, {i, j});
-      const auto area = static_cast<double>(region.cells.size());
-      if (region.length < size.least_length || area < size.least_area) continue;
-      for (const auto& [row, col] : region.cells) kept(row, col) = true;
-    }
-  return kept;
+Mask joined(const Mask& chosen, const Mask& observed) {
+  constexpr Eigen::Index REACH = 2;
+  const Mask closed = !dilated(!dilated(chosen, REACH), REACH);
+  return chosen || (closed && !observed);
+}
+
+std::vector<Region> regionsOf(Mask mask) {
+  std::vector<Region> regions;
+  for (Eigen::Index n = 0; n < mask.size(); ++n)
+    if (mask.data()[n]) regions.push_back(takeRegion(mask, n));
+  return regions;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "pcl_fft_ground/core/grid/elevation_grid.h"
 
 namespace pcl_fft_ground::core {
@@ -11,14 +13,17 @@ Mask dilated(const Mask& mask, Eigen::Index reach);
 /// are.
 Mask eroded(const Mask& mask, Eigen::Index reach);
 
-/// How large a region has to be.
-struct RegionSize {
-  double least_length;    ///< of the diagonal of its bounding box [cells]
-  double least_area = 1;  ///< [cells]
+/// Chosen cells and the empty ones between those of them that lie close to each other: there may be but one
+/// point to four cells.
+Mask joined(const Mask& chosen, const Mask& observed);
+
+/// Cells of a mask that are connected along sides and corners.
+struct Region {
+  std::vector<Eigen::Index> cells;  ///< storage indices
+  double length = 0;                ///< diagonal of the bounding box [cells]
 };
 
-/** The regions of a mask, connected along sides and corners, that hold a cell of `cores` and are large
- * enough. O(cells). */
-Mask regionsAround(Mask mask, const Mask& cores, const RegionSize& size);
+/// The regions of a mask, in the order of their first cells. O(cells).
+std::vector<Region> regionsOf(Mask mask);
 
 }  // namespace pcl_fft_ground::core

@@ -104,20 +104,4 @@ Eigen::ArrayXXd lowerEnvelope(const std::vector<Eigen::Vector3d>& points, const 
   return surface;
 }
 
-Eigen::ArrayXXd blockMeans(const CellPoints& points, const std::vector<bool>& ground,
-                           const GridGeometry& grid) {
-  ElevationGrid blocks = emptyGrid(grid);
-  Eigen::ArrayXXd counts = blocks.elevation;
-  for (std::size_t n = 0; n < points.positions.size(); ++n) {
-    if (!ground[n]) continue;
-    const std::size_t block = blockOf(points.positions[n], grid);
-    blocks.elevation.data()[block] += points.positions[n].z();
-    counts.data()[block] += 1;
-  }
-  blocks.elevation /= counts.max(1);
-  blocks.observed = counts > 0;
-  fillEmptyCells(blocks.elevation, blocks.observed);
-  return blocks.elevation;
-}
-
 }  // namespace pcl_fft_ground::core

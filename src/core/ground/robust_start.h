@@ -16,8 +16,4 @@ namespace pcl_fft_ground::core {
 Eigen::ArrayXXd lowerEnvelope(const std::vector<Eigen::Vector3d>& points, const GridGeometry& grid,
                               double wavelength, PenalisedFit& fit);
 
-/// A first surface through the points that are known to be ground; empty blocks take the nearest height.
-Eigen::ArrayXXd blockMeans(const CellPoints& points, const std::vector<bool>& ground,
-                           const GridGeometry& grid);
-
 }  // namespace pcl_fft_ground::core

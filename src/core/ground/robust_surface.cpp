@@ -92,17 +92,15 @@ void RobustSurface::startBelowObjects(double wavelength) {
   takeSamples(SAMPLES_PER_CELL);
 }
 
-void RobustSurface::startFrom(const std::vector<bool>& ground, double wavelength) {
+void RobustSurface::refit(const std::vector<bool>& ground) {
   constexpr int ROUNDS = 4, STEPS = 5;
-  changeScale(wavelength);
   samples_ = points_.positions;
   findFootings();
-  fit_->startFrom(blockMeans(points_, ground, grid_.geometry()));
   findResiduals();
   weights_.resize(residuals_.size());
   std::copy(ground.begin(), ground.end(), weights_.begin());
   for (int n = 0; n < ROUNDS; ++n) fit(STEPS);
-  const double least = std::max(floors_.least, floors_.slope * wavelength / GROUND_SCALES);
+  const double least = std::max(floors_.least, floors_.slope * filter_.wavelength / GROUND_SCALES);
   estimateSpread(least, std::numeric_limits<double>::infinity());
 }
 

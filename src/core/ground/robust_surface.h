@@ -31,11 +31,11 @@ class RobustSurface {
   /// Starts from the lower envelope at this wavelength.
   void startBelowObjects(double wavelength);
 
-  /// Starts from a surface through the points flagged as ground.
-  void startFrom(const std::vector<bool>& ground, double wavelength);
-
   /// Fits the surface at this wavelength, objects of the last scale staying masked.
   void refine(double wavelength);
+
+  /// Fits the surface at the present wavelength to the points that are flagged as ground.
+  void refit(const std::vector<bool>& ground);
 
   /// Fits the surface to other points at the present wavelength, all of them ground.
   void fitTo(const CellPoints& points);

@@ -43,14 +43,14 @@ TEST(RobustOpenings, CutOffWhatSlowOpeningsCutOff) {
     surface = lower;
   }
   EXPECT_LT(expected.count(), expected.size());
-  EXPECT_TRUE((openedGround(gridOf(heights), {12, 0.12, 0.4}) == expected).all());
+  EXPECT_TRUE(((steepnessByOpenings(gridOf(heights), {12, 0.4}) <= 0.12F) == expected).all());
 }
 
 TEST(RobustOpenings, KeepTheEdgeOfAWideTerrace) {
   Eigen::ArrayXXd heights = Eigen::ArrayXXd::Zero(40, 30);
   heights.bottomRows(15) = 5;
   heights.block(10, 10, 4, 4) = 2;
-  const Mask ground = openedGround(gridOf(heights), {12, 0.3, 0.1});
+  const Mask ground = steepnessByOpenings(gridOf(heights), {12, 0.1}) <= 0.3F;
   EXPECT_EQ(ground.size() - ground.count(), 4 * 4);
   EXPECT_FALSE(ground(12, 12));
 }

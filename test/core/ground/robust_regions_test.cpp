@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <cmath>
 #include <random>
 
 #include "random_points.h"
@@ -38,20 +38,33 @@ TEST(RobustRegions, DilationAndErosionLookAtSquares) {
   }
 }
 
-TEST(RobustRegions, KeepsLongAndLargeRegionsThatHoldACore) {
-  Mask mask = Mask::Constant(20, 20, false);
-  mask.block(1, 1, 3, 8).setConstant(true);  // long, connected at a corner with the next
-  mask(4, 9) = true;
-  mask.block(10, 1, 2, 9).setConstant(true);   // long, without a core
-  mask.block(15, 15, 3, 3).setConstant(true);  // short
-  Mask cores = Mask::Constant(20, 20, false);
-  cores(2, 2) = cores(16, 16) = cores(0, 19) = true;
-  const Mask kept = regionsAround(mask, cores, {9.5});  // the diagonals: 9.8, 9.2 and 4.2
-  EXPECT_EQ(kept.count(), 3 * 8 + 1);
-  EXPECT_TRUE(kept(4, 9));
-  EXPECT_EQ(regionsAround(mask, cores, {0}).count(), 3 * 8 + 1 + 3 * 3);
-  EXPECT_EQ(regionsAround(mask, cores, {0, 25}).count(), 3 * 8 + 1);
-  EXPECT_FALSE(regionsAround(mask, cores, {0, 26}).any());
+TEST(RobustRegions, AreConnectedAlongSidesAndCorners) {
+  Mask mask = Mask::Constant(20, 21, false);
+  mask.block(1, 1, 3, 8).setConstant(true);
+  mask(4, 9) = true;  // connected at a corner
+  mask.block(10, 1, 2, 9).setConstant(true);
+  mask(19, 20) = true;
+  const std::vector<Region> regions = regionsOf(mask);
+  ASSERT_EQ(regions.size(), 3U);
+  EXPECT_EQ(regions[0].cells.size(), 3U * 8 + 1);
+  EXPECT_DOUBLE_EQ(regions[0].length, std::hypot(4, 9));
+  EXPECT_EQ(regions[1].cells.size(), 2U * 9);
+  EXPECT_DOUBLE_EQ(regions[1].length, std::hypot(2, 9));
+  EXPECT_EQ(regions[2].cells, std::vector<Eigen::Index>{19 + 20 * 20});
+}
+
+TEST(RobustRegions, JoinCellsOverEmptyOnesBetween) {
+  Mask chosen = Mask::Constant(20, 20, false), observed = chosen;
+  chosen.col(5).setConstant(true);
+  chosen.col(9).setConstant(true);
+  observed = chosen;
+  observed(10, 7) = true;
+  const Mask all = joined(chosen, observed);
+  EXPECT_TRUE(all(10, 6));
+  EXPECT_FALSE(all(10, 7));   // holds a point, and is not chosen
+  EXPECT_FALSE(all(10, 12));  // not between
+  EXPECT_EQ(regionsOf(chosen).size(), 2U);
+  EXPECT_EQ(regionsOf(all).size(), 1U);
 }
 
 }  // namespace

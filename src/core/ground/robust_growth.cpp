@@ -1,0 +1,238 @@
+#include "ground/robust_growth.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ground/robust_regions.h"
+
+namespace pcl_fft_ground::core {
+namespace {
+
+// 3.5 leaks on to objects, 6 stalls.
+constexpr double DISC_REACH = 4.5;    ///< radius of the ground looked at [distances between observed cells]
+constexpr double STEEPEST = 2;        ///< what rises faster lies across a step [m/m]
+constexpr double STEP_SPREADS = 6;    ///< the same, as far as noise goes
+constexpr double ABOVE = 3;           ///< ground is no higher above what is expected [standard deviations]
+constexpr double BELOW = 10;          ///< nor deeper below
+constexpr double LIKELY_SLOPE = 3;    ///< prior: standard deviation of the slope [m/m]
+constexpr int FEWEST = 6;             ///< cells of ground that a quadric needs
+constexpr double LEAST_SHARE = 0.25;  ///< of ground in the disc: thin tongues are how objects leak
+constexpr double LEAST_ACCEPTED =
+    0.6;  ///< of a region's cells judged from outside: hills .68 to 1, objects up to .55
+
+using Quadric = Eigen::Matrix<double, 6, 1>;
+using Normal = Eigen::Matrix<double, 6, 6>;
+
+/// Offsets of the cells around one.
+std::vector<std::pair<Eigen::Index, Eigen::Index>> discOf(double radius) {
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> disc;
+  const auto reach = static_cast<Eigen::Index>(radius);
+  for (Eigen::Index j = -reach; j <= reach; ++j)
+    for (Eigen::Index i = -reach; i <= reach; ++i)
+      if (static_cast<double>(i * i + j * j) <= radius * radius) disc.emplace_back(i, j);
+  return disc;
+}
+
+/// Ground about a place, as sums for a quadric z = a + bu + cv + du2/2 + euv + fv2/2 around a point.
+struct Surroundings {
+  Normal products = Normal::Zero();
+  Quadric heights = Quadric::Zero();
+  double squares = 0;
+  int ground = 0, observed = 0;
+};
+
+/// How curved the land is and how its points spread.
+struct Shape {
+  double spread;     ///< [m]
+  double curvature;  ///< [1/m]
+};
+
+class Land {
+ public:
+  Land(const CellMap& map, double spread)
+      : map_(map),
+        rows_(map.cells().rows),
+        cols_(map.cells().cols),
+        step_height_(STEP_SPREADS * spread),
+        disc_(discOf(DISC_REACH / std::sqrt(map.density()))) {}
+
+  template <typename Visit>
+  void around(Eigen::Index cell, const Visit& visit) const {
+    visitOffsets(cell, disc_, visit);
+  }
+
+  template <typename Visit>
+  void beside(Eigen::Index cell, const Visit& visit) const {
+    const Eigen::Index row = cell % rows_, col = cell / rows_, reach = map_.reach();
+    for (Eigen::Index j = std::max<Eigen::Index>(col - reach, 0); j <= std::min(col + reach, cols_ - 1); ++j)
+      for (Eigen::Index i = std::max<Eigen::Index>(row - reach, 0); i <= std::min(row + reach, rows_ - 1);
+           ++i)
+        if (map_.isObserved(i + j * rows_)) visit(i + j * rows_);
+  }
+
+  bool isAcrossAStep(const Eigen::Vector3d& offset) const {
+    return std::abs(offset.z()) > STEEPEST * offset.head<2>().lpNorm<1>() + step_height_;
+  }
+
+  Surroundings surroundingsOf(Eigen::Index cell, const Mask& ground) const {
+    Surroundings result;
+    const Eigen::Vector3d& centre = map_.point(cell);
+    around(cell, [&](Eigen::Index other) {
+      ++result.observed;
+      if (!ground.data()[other]) return;
+      const Eigen::Vector3d offset = map_.point(other) - centre;
+      if (isAcrossAStep(offset)) return;
+      ++result.ground;
+      const double u = offset.x(), v = offset.y(), z = offset.z();
+      Quadric terms;
+      terms << 1, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
+      result.products += terms * terms.transpose();
+      result.heights += z * terms;
+      result.squares += z * z;
+    });
+    return result;
+  }
+
+  const CellMap& map() const { return map_; }
+  std::size_t discSize() const { return disc_.size(); }
+
+ private:
+  template <typename Offsets, typename Visit>
+  void visitOffsets(Eigen::Index cell, const Offsets& offsets, const Visit& visit) const {
+    const Eigen::Index row = cell % rows_, col = cell / rows_;
+    for (const auto& [i, j] : offsets) {
+      if (row + i < 0 || row + i >= rows_ || col + j < 0 || col + j >= cols_) continue;
+      const Eigen::Index other = row + i + (col + j) * rows_;
+      if (map_.isObserved(other)) visit(other);
+    }
+  }
+
+  const CellMap& map_;
+  Eigen::Index rows_, cols_;
+  double step_height_;
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> disc_;
+};
+
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// From places where all around is ground; none if there are hardly any.
+std::optional<Shape> shapeOf(const Land& land, const Mask& ground, double spread, double largest_object) {
+  constexpr Eigen::Index LOOKED_AT = 500;
+  constexpr std::size_t FEWEST_PLACES = 10;
+  constexpr double FILLED = 0.6, MOST_CURVED = 5, TYPICAL = 0.75, MORE_CURVED = 1.5;
+  constexpr int FEWEST_CELLS = 10;
+  std::vector<Eigen::Index> candidates;
+  for (Eigen::Index n = 0; n < ground.size(); ++n)
+    if (ground.data()[n]) candidates.push_back(n);
+  const double fewest =
+      std::max<double>(FEWEST_CELLS, FILLED * land.map().density() * static_cast<double>(land.discSize()));
+  std::vector<double> misfits, curvatures;
+  const std::size_t one_in = std::max<std::size_t>(candidates.size() / (4 * LOOKED_AT), 1);
+  for (std::size_t n = 0; n < candidates.size() && misfits.size() < LOOKED_AT; n += one_in) {
+    const Surroundings all = land.surroundingsOf(candidates[n], ground);
+    if (all.ground < all.observed || all.ground < fewest) continue;
+    const Eigen::LDLT<Normal> solver(all.products + 1e-12 * all.products.trace() * Normal::Identity());
+    const Quadric shape = solver.solve(all.heights);
+    misfits.push_back(std::sqrt(std::max(0.0, all.squares - shape.dot(all.heights)) / all.ground));
+    curvatures.push_back(std::sqrt(shape[3] * shape[3] + 2 * shape[4] * shape[4] + shape[5] * shape[5]));
+  }
+  if (misfits.size() < FEWEST_PLACES) return std::nullopt;
+  return Shape{std::max(quantile(misfits, 0.5), 0.5 * spread),
+               std::min(MORE_CURVED * quantile(curvatures, TYPICAL), MOST_CURVED / largest_object)};
+}
+
+enum class Verdict : unsigned char { UNDECIDED, GROUND, NO_GROUND };
+
+/// Judges a cell by the ground around it.
+Verdict judge(const Land& land, Eigen::Index cell, const Mask& ground, const Shape& shape) {
+  const Surroundings near = land.surroundingsOf(cell, ground);
+  if (near.ground < FEWEST || near.ground < LEAST_SHARE * near.observed) return Verdict::UNDECIDED;
+  const double variance = shape.spread * shape.spread;
+  const double bent = std::pow(std::max(shape.curvature, 1e-9), -2), sloping = std::pow(LIKELY_SLOPE, -2);
+  Quadric prior;
+  prior << 0, sloping, sloping, bent, 2 * bent, bent;
+  Normal information = near.products / variance;
+  information.diagonal() += prior;
+  const Eigen::LDLT<Normal> solver(information);
+  const Quadric first = solver.solve(Quadric::Unit(0));  // of the covariance
+  const double expected = first.dot(near.heights) / variance;
+  const double deviation = std::sqrt(std::max(0.0, first[0]) + variance);
+  return -expected <= ABOVE * deviation && -expected >= -BELOW * deviation ? Verdict::GROUND
+                                                                           : Verdict::NO_GROUND;
+}
+
+/// Keeps the regions that follow from the ground around them.
+Mask followingRegions(const Mask& gained, const std::vector<Verdict>& first, const Mask& observed) {
+  const Mask filled = joined(gained, observed);
+  const Mask cores = eroded(filled, 1);
+  Mask kept = Mask::Constant(gained.rows(), gained.cols(), false);
+  for (const Region& region : regionsOf(filled)) {
+    double decided = 0, accepted = 0;
+    bool broad = false;
+    for (const Eigen::Index cell : region.cells) {
+      const Verdict verdict = first[static_cast<std::size_t>(cell)];
+      broad = broad || cores.data()[cell];
+      if (!gained.data()[cell]) continue;
+      if (verdict != Verdict::UNDECIDED) ++decided;
+      if (verdict == Verdict::GROUND) ++accepted;
+    }
+    if (!broad || accepted < LEAST_ACCEPTED * decided) continue;
+    for (const Eigen::Index cell : region.cells) kept.data()[cell] = gained.data()[cell];
+  }
+  return kept;
+}
+
+}  // namespace
+
+Mask continuedGround(const CellMap& map, const Mask& ground, double spread, double largest_object) {
+  const Land land(map, spread);
+  Mask gained = Mask::Constant(ground.rows(), ground.cols(), false);
+  const std::optional<Shape> shape = shapeOf(land, ground, spread, largest_object);
+  if (!shape) return gained;
+
+  std::vector<Verdict> first(static_cast<std::size_t>(ground.size()), Verdict::UNDECIDED);
+  Mask all = ground, asked = gained;
+  std::vector<Eigen::Index> fresh, open;
+  for (Eigen::Index n = 0; n < ground.size(); ++n)
+    if (ground.data()[n]) fresh.push_back(n);
+  for (int round = 0; !fresh.empty(); ++round) {
+    open.clear();
+    const auto ask = [&](Eigen::Index cell) {
+      if (all.data()[cell] || asked.data()[cell]) return;
+      bool reachable = false;
+      land.beside(cell, [&](Eigen::Index other) {
+        reachable =
+            reachable || (all.data()[other] && !land.isAcrossAStep(map.point(other) - map.point(cell)));
+      });
+      if (!reachable) return;
+      asked.data()[cell] = true;
+      open.push_back(cell);
+    };
+    for (const Eigen::Index cell : fresh)
+      if (round == 0)
+        land.beside(cell, ask);
+      else
+        land.around(cell, ask);
+    fresh.clear();
+    for (const Eigen::Index cell : open) {
+      const Verdict verdict = judge(land, cell, all, *shape);
+      if (round == 0) first[static_cast<std::size_t>(cell)] = verdict;
+      if (verdict == Verdict::GROUND) fresh.push_back(cell);
+    }
+    for (const Eigen::Index cell : open) asked.data()[cell] = false;
+    for (const Eigen::Index cell : fresh) all.data()[cell] = gained.data()[cell] = true;
+  }
+  Mask observed(ground.rows(), ground.cols());
+  for (Eigen::Index n = 0; n < observed.size(); ++n) observed.data()[n] = map.isObserved(n);
+  return followingRegions(gained, first, observed);
+}
+
+}  // namespace pcl_fft_ground::core
