@@ -172,4 +172,24 @@ void followGround(const CellMap& land, const Mask& ground, double spread, Eigen:
       surface.data()[n] += residualOf(n) - offset;
 }
 
+Eigen::ArrayXXf stepsOfGround(const CellMap& land, const Mask& ground, const Eigen::ArrayXXd& surface) {
+  constexpr double STEEPEST = 2;  // what rises faster is a step [m/m]
+  const Eigen::Index rows = ground.rows(), cols = ground.cols(), reach = land.reach();
+  Eigen::ArrayXXf steps = Eigen::ArrayXXf::Zero(rows, cols);
+  for (Eigen::Index col = 0; col < cols; ++col)
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      if (!ground(row, col)) continue;
+      for (Eigen::Index j = std::max<Eigen::Index>(col - reach, 0); j <= std::min(col + reach, cols - 1); ++j)
+        for (Eigen::Index i = std::max<Eigen::Index>(row - reach, 0); i <= std::min(row + reach, rows - 1);
+             ++i) {
+          if (!ground(i, j)) continue;
+          const double distance = land.cells().cell_size * std::hypot(i - row, j - col);
+          const double rise = surface(i, j) - surface(row, col);
+          if (rise > STEEPEST * distance)
+            steps(row, col) = std::max(steps(row, col), static_cast<float>(rise));
+        }
+    }
+  return steps;
+}
+
 }  // namespace pcl_fft_ground::core

@@ -30,4 +30,11 @@ Mask groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, cons
  */
 void followGround(const CellMap& land, const Mask& ground, double spread, Eigen::ArrayXXd& surface);
 
+/** Where the ground steps up from a cell to the next, the cell holds points of both levels.
+ * \param ground observed cells that are ground
+ * \param surface heights at the cells of `land` [m]
+ * \return for each cell the height of the step [m], 0 where there is none
+ */
+Eigen::ArrayXXf stepsOfGround(const CellMap& land, const Mask& ground, const Eigen::ArrayXXd& surface);
+
 }  // namespace pcl_fft_ground::core

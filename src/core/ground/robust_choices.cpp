@@ -70,13 +70,15 @@ RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bo
 }
 
 void chooseTolerances(const RobustParameters& parameters, Eigen::Index points, RobustGround& ground) {
-  constexpr double SCALES = 3, MORE_SCALES = 5, SPACINGS = 1.25;
-  constexpr double LEAST_DEPTH = 0.05, DEPTH_SCALES = 10;
+  constexpr double SCALES = 3, MORE_SCALES = 4.5, SPACINGS = 1.25;
+  constexpr double LEAST_DEPTH = 0.05, DEPTH_SCALES = 10, LEAST_SPREAD = 2.5e-4;
   const double usual = USUAL_TOLERANCE * ground.max_object_size;
-  const double noise = SCALES * ground.scale, more_noise = MORE_SCALES * ground.scale;
+  // Nor is the surface known better than this where there is no noise at all.
+  const double spread = std::max(ground.scale, LEAST_SPREAD * ground.max_object_size);
+  const double noise = SCALES * spread, more_noise = MORE_SCALES * spread;
   ground.tolerance =
       choose(parameters.height_tolerance, std::max(noise, std::min(usual, more_noise)), "height_tolerance",
-             more_noise < usual ? "five times the spread of the ground points"
+             more_noise < usual ? "4.5 times the spread of the ground points"
              : noise < usual    ? "0.98 % of the largest object"
                                 : "three times the spread of the ground points",
              ground.choices);

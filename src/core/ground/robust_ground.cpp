@@ -137,10 +137,13 @@ RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometr
   describeSurface(surface, plan, ground);
   chooseTolerances(parameters, points.cols(), ground);
   ground.lowest = lowestHeights(sorted, {surface.grid(), surface.heights(), 0, 0});
+  ground.steps.setZero(plan.cells.rows, plan.cells.cols);
   if (completed.any()) {
+    const CellMap land(lowest, plan.cells);
     const Eigen::ArrayXXd smooth = ground.surface.height;
-    followGround(CellMap(lowest, plan.cells), completed, ground.scale, ground.surface.height);
+    followGround(land, completed, ground.scale, ground.surface.height);
     ground.lowest -= (ground.surface.height - smooth).cast<float>();
+    ground.steps = stepsOfGround(land, completed, ground.surface.height);
   }
   return ground;
 }

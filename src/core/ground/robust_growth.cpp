@@ -15,6 +15,7 @@ namespace {
 // 3.5 leaks on to objects, 6 stalls.
 constexpr double DISC_REACH = 4.5;    ///< radius of the ground looked at [distances between observed cells]
 constexpr double STEEPEST = 2;        ///< what rises faster lies across a step [m/m]
+constexpr double GENTLE = 0.5;        ///< where that finds a step too many, the ground is asked without [m/m]
 constexpr double STEP_SPREADS = 6;    ///< the same, as far as noise goes
 constexpr double ABOVE = 3;           ///< ground is no higher above what is expected [standard deviations]
 constexpr double BELOW = 10;          ///< nor deeper below
@@ -74,18 +75,18 @@ class Land {
         if (map_.isObserved(i + j * rows_)) visit(i + j * rows_);
   }
 
-  bool isAcrossAStep(const Eigen::Vector3d& offset) const {
-    return std::abs(offset.z()) > STEEPEST * offset.head<2>().lpNorm<1>() + step_height_;
+  bool isAcrossAStep(const Eigen::Vector3d& offset, double steepest = STEEPEST) const {
+    return std::abs(offset.z()) > steepest * offset.head<2>().lpNorm<1>() + step_height_;
   }
 
-  Surroundings surroundingsOf(Eigen::Index cell, const Mask& ground) const {
+  Surroundings surroundingsOf(Eigen::Index cell, const Mask& ground, double steepest = STEEPEST) const {
     Surroundings result;
     const Eigen::Vector3d& centre = map_.point(cell);
     around(cell, [&](Eigen::Index other) {
       ++result.observed;
       if (!ground.data()[other]) return;
       const Eigen::Vector3d offset = map_.point(other) - centre;
-      if (isAcrossAStep(offset)) return;
+      if (isAcrossAStep(offset, steepest)) return;
       ++result.ground;
       const double u = offset.x(), v = offset.y(), z = offset.z();
       Quadric terms;
@@ -151,9 +152,10 @@ std::optional<Shape> shapeOf(const Land& land, const Mask& ground, double spread
 
 enum class Verdict : unsigned char { UNDECIDED, GROUND, NO_GROUND };
 
-/// Judges a cell by the ground around it.
-Verdict judge(const Land& land, Eigen::Index cell, const Mask& ground, const Shape& shape) {
-  const Surroundings near = land.surroundingsOf(cell, ground);
+/// Judges a cell by the ground around it that no more than this slope leads to.
+Verdict judgeUpTo(double steepest, const Land& land, Eigen::Index cell, const Mask& ground,
+                  const Shape& shape) {
+  const Surroundings near = land.surroundingsOf(cell, ground, steepest);
   if (near.ground < FEWEST || near.ground < LEAST_SHARE * near.observed) return Verdict::UNDECIDED;
   const double variance = shape.spread * shape.spread;
   const double bent = std::pow(std::max(shape.curvature, 1e-9), -2), sloping = std::pow(LIKELY_SLOPE, -2);
@@ -167,6 +169,14 @@ Verdict judge(const Land& land, Eigen::Index cell, const Mask& ground, const Sha
   const double deviation = std::sqrt(std::max(0.0, first[0]) + variance);
   return -expected <= ABOVE * deviation && -expected >= -BELOW * deviation ? Verdict::GROUND
                                                                            : Verdict::NO_GROUND;
+}
+
+/// Beside a pit or a wall the ground across the step counts only where land is steep.
+Verdict judge(const Land& land, Eigen::Index cell, const Mask& ground, const Shape& shape) {
+  const Verdict verdict = judgeUpTo(STEEPEST, land, cell, ground, shape);
+  const bool again =
+      verdict == Verdict::NO_GROUND && judgeUpTo(GENTLE, land, cell, ground, shape) == Verdict::GROUND;
+  return again ? Verdict::GROUND : verdict;
 }
 
 /// Keeps the regions that follow from the ground around them.

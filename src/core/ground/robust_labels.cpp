@@ -94,8 +94,11 @@ std::vector<float> reachesOf(const RobustGround& ground, const PatchGrid& grid) 
     const double bend =
         std::max(0.0, (lowest - static_cast<double>(patch.lean)) / static_cast<double>(patch.stretch));
     const bool seen = ground.elevation.observed.data()[n];
-    reaches[static_cast<std::size_t>(n)] = static_cast<float>(
-        seen ? std::min(bend + ground.tolerance, ground.most_tolerance) : ground.most_tolerance);
+    const double usual =
+        seen ? std::min(bend + ground.tolerance, ground.most_tolerance) : ground.most_tolerance;
+    const float step = ground.steps.data()[n];
+    reaches[static_cast<std::size_t>(n)] =
+        std::max(static_cast<float>(usual), step > 0 ? step + static_cast<float>(ground.tolerance) : 0.0F);
   }
   return reaches;
 }

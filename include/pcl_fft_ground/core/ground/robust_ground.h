@@ -42,18 +42,19 @@ struct RobustChoice {
 
 /// The ground of a scan, how sure it is, and what led to it.
 struct RobustGround {
-  ElevationGrid elevation;          ///< height of each cell by the statistic
-  double extent = 0;                ///< smaller horizontal extent of the points [m]
-  double max_object_size = 0;       ///< m_u extent, or the size given [m]
-  GroundSurface surface;            ///< the ground; supported within the finest wavelength of observed ground
-  Eigen::ArrayXXf lowest;           ///< height of each cell's lowest point above the surface [m], 0 for none
-  double scale = 0;                 ///< spread of the ground points around the surface [m]
-  double tolerance = 0;             ///< an object is higher above the surface than this [m]
-  double most_tolerance = 0;        ///< or than its cell's lowest point by the tolerance, up to this [m]
-  double slope_tolerance = 0;       ///< plus this times the local slope [m]
-  double depth_tolerance = 0;       ///< a point deeper below the surface than this is an object [m]
-  double finest_wavelength = 0;     ///< of the surface [m]
-  std::vector<double> wavelengths;  ///< all scales, coarse to fine [m]
+  ElevationGrid elevation;     ///< height of each cell by the statistic
+  double extent = 0;           ///< smaller horizontal extent of the points [m]
+  double max_object_size = 0;  ///< m_u extent, or the size given [m]
+  GroundSurface surface;       ///< the ground; supported within the finest wavelength of observed ground
+  Eigen::ArrayXXf lowest;      ///< height of each cell's lowest point above the surface [m], 0 for none
+  Eigen::ArrayXXf steps;       ///< height of the ground's step up from each cell to the next [m], 0 for none
+  double scale = 0;            ///< spread of the ground points around the surface [m]
+  double tolerance = 0;        ///< an object is higher above the surface than this [m]
+  double most_tolerance = 0;   ///< or than its cell's lowest point by the tolerance, up to this [m]
+  double slope_tolerance = 0;  ///< plus this times the local slope [m]
+  double depth_tolerance = 0;  ///< a point deeper below the surface than this is an object [m]
+  double finest_wavelength = 0;       ///< of the surface [m]
+  std::vector<double> wavelengths;    ///< all scales, coarse to fine [m]
   std::vector<RobustChoice> choices;  ///< of the values that were not set
 };
 
