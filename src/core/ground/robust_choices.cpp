@@ -17,6 +17,11 @@ T choose(const std::optional<T>& given, T chosen, const char* parameter, const c
   return chosen;
 }
 
+/// The larger extent [m]; of a single place, which has none, any length does.
+double widestOf(const Eigen::Array2d& extents) {
+  return extents.maxCoeff() > 0 ? extents.maxCoeff() : 1;
+}
+
 /// 36 cells to the largest object, but no more than 4 cells to a point.
 double chooseCellSize(const std::optional<double>& given, double max_object_size,
                       const Eigen::Array2d& extents, Eigen::Index points, Choices& choices) {
@@ -25,7 +30,7 @@ double chooseCellSize(const std::optional<double>& given, double max_object_size
   const double most_cells = CELLS_PER_POINT * static_cast<double>(points);
   // A strip narrower than a cell has one row of them.
   const double by_spacing = std::max(std::sqrt(extents.prod() / most_cells), extents.maxCoeff() / most_cells);
-  const double least = 1e-6 * std::max(1.0, extents.maxCoeff());
+  const double least = 1e-6 * widestOf(extents);
   return choose(given, std::max({by_object, by_spacing, least}), "cell_size",
                 by_object > by_spacing ? "a thirty-sixth of the largest object"
                                        : "the points are too sparse for smaller cells",
@@ -50,12 +55,12 @@ double pointSpacing(const ElevationGrid& elevation, Eigen::Index points) {
 
 RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bounds, Eigen::Index points,
                             Choices& choices) {
-  constexpr double NARROWEST = 1e-3, LEAST_WIDTH = 1e-3;  // of the other extent; [m]
+  constexpr double NARROWEST = 1e-3;  // of the other extent
   constexpr double SLOPE = 0.04;
   const Eigen::Array2d extents = (bounds.high - bounds.low).head<2>();
   RobustPlan plan;
   plan.extent = extents.minCoeff();
-  const double widest = std::max(extents.maxCoeff(), LEAST_WIDTH);
+  const double widest = widestOf(extents);
   const double extent = plan.extent > NARROWEST * widest ? plan.extent : widest;
   plan.max_object_size = parameters.max_object_size.value_or(parameters.relative_max_object_size * extent);
   plan.cells = gridAround(
@@ -70,19 +75,20 @@ RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bo
 }
 
 void chooseTolerances(const RobustParameters& parameters, Eigen::Index points, RobustGround& ground) {
-  constexpr double SCALES = 3, MORE_SCALES = 4.5, SPACINGS = 1.25;
-  constexpr double LEAST_DEPTH = 0.05, DEPTH_SCALES = 10, LEAST_SPREAD = 2.5e-4;
+  constexpr double SCALES = 3, MORE_SCALES = 4, MOST_SCALES = 10, SPACINGS = 1.25;
+  constexpr double LEAST_DEPTH = 0.05, DEPTH_SCALES = 10, LEAST_SPREAD = 4e-4;
   const double usual = USUAL_TOLERANCE * ground.max_object_size;
   // Nor is the surface known better than this where there is no noise at all.
   const double spread = std::max(ground.scale, LEAST_SPREAD * ground.max_object_size);
   const double noise = SCALES * spread, more_noise = MORE_SCALES * spread;
   ground.tolerance =
       choose(parameters.height_tolerance, std::max(noise, std::min(usual, more_noise)), "height_tolerance",
-             more_noise < usual ? "4.5 times the spread of the ground points"
+             more_noise < usual ? "four times the spread of the ground points"
              : noise < usual    ? "0.98 % of the largest object"
                                 : "three times the spread of the ground points",
              ground.choices);
-  ground.most_tolerance = parameters.height_tolerance.value_or(std::max(noise, usual));
+  ground.most_tolerance =
+      parameters.height_tolerance.value_or(std::max(noise, std::min(usual, MOST_SCALES * spread)));
   ground.slope_tolerance = SPACINGS * pointSpacing(ground.elevation, points);
   ground.depth_tolerance = std::max(LEAST_DEPTH * ground.max_object_size, DEPTH_SCALES * ground.scale);
 }

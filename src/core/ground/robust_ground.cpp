@@ -110,7 +110,7 @@ void describeSurface(const RobustSurface& surface, const RobustPlan& plan, Robus
 
 RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
                                   const RobustParameters& parameters) {
-  constexpr Eigen::Index POINTS_PER_CELL = 8;               // as many tell where its ground lies
+  constexpr Eigen::Index POINTS_PER_CELL = 10;              // as many tell where its ground lies
   constexpr double LEAST_SCALE = 0.0015, PRECISION = 1e-4;  // as shares of the largest object
   RobustGround ground;
   ground.surface.frame_from_input = frame_from_input;

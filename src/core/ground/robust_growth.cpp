@@ -38,7 +38,7 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> discOf(double radius) {
   return disc;
 }
 
-/// Ground about a place, as sums for a quadric z = a + bu + cv + du2/2 + euv + fv2/2 around a point.
+/// Ground about a point, as sums for a quadric z = a + bu + cv + du2/2 + euv + fv2/2, u and v in cells.
 struct Surroundings {
   Normal products = Normal::Zero();
   Quadric heights = Quadric::Zero();
@@ -81,6 +81,7 @@ class Land {
 
   Surroundings surroundingsOf(Eigen::Index cell, const Mask& ground, double steepest = STEEPEST) const {
     Surroundings result;
+    const double per_cell = 1 / map_.cells().cell_size;
     const Eigen::Vector3d& centre = map_.point(cell);
     around(cell, [&](Eigen::Index other) {
       ++result.observed;
@@ -88,7 +89,7 @@ class Land {
       const Eigen::Vector3d offset = map_.point(other) - centre;
       if (isAcrossAStep(offset, steepest)) return;
       ++result.ground;
-      const double u = offset.x(), v = offset.y(), z = offset.z();
+      const double u = offset.x() * per_cell, v = offset.y() * per_cell, z = offset.z();
       Quadric terms;
       terms << 1, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
       result.products += terms * terms.transpose();
@@ -128,13 +129,14 @@ double quantile(std::vector<double>& values, double share) {
 std::optional<Shape> shapeOf(const Land& land, const Mask& ground, double spread, double largest_object) {
   constexpr Eigen::Index LOOKED_AT = 500;
   constexpr std::size_t FEWEST_PLACES = 10;
-  constexpr double FILLED = 0.6, MOST_CURVED = 5, TYPICAL = 0.75, MORE_CURVED = 1.5;
+  constexpr double FILLED = 0.6, LEAST_CURVED = 1e-3, MOST_CURVED = 5, TYPICAL = 0.75, MORE_CURVED = 1.5;
   constexpr int FEWEST_CELLS = 10;
   std::vector<Eigen::Index> candidates;
   for (Eigen::Index n = 0; n < ground.size(); ++n)
     if (ground.data()[n]) candidates.push_back(n);
   const double fewest =
       std::max<double>(FEWEST_CELLS, FILLED * land.map().density() * static_cast<double>(land.discSize()));
+  const double per_cell2 = std::pow(land.map().cells().cell_size, -2);
   std::vector<double> misfits, curvatures;
   const std::size_t one_in = std::max<std::size_t>(candidates.size() / (4 * LOOKED_AT), 1);
   for (std::size_t n = 0; n < candidates.size() && misfits.size() < LOOKED_AT; n += one_in) {
@@ -143,11 +145,13 @@ std::optional<Shape> shapeOf(const Land& land, const Mask& ground, double spread
     const Eigen::LDLT<Normal> solver(all.products + 1e-12 * all.products.trace() * Normal::Identity());
     const Quadric shape = solver.solve(all.heights);
     misfits.push_back(std::sqrt(std::max(0.0, all.squares - shape.dot(all.heights)) / all.ground));
-    curvatures.push_back(std::sqrt(shape[3] * shape[3] + 2 * shape[4] * shape[4] + shape[5] * shape[5]));
+    curvatures.push_back(per_cell2 *
+                         std::sqrt(shape[3] * shape[3] + 2 * shape[4] * shape[4] + shape[5] * shape[5]));
   }
   if (misfits.size() < FEWEST_PLACES) return std::nullopt;
   return Shape{std::max(quantile(misfits, 0.5), 0.5 * spread),
-               std::min(MORE_CURVED * quantile(curvatures, TYPICAL), MOST_CURVED / largest_object)};
+               std::clamp(MORE_CURVED * quantile(curvatures, TYPICAL), LEAST_CURVED / largest_object,
+                          MOST_CURVED / largest_object)};
 }
 
 enum class Verdict : unsigned char { UNDECIDED, GROUND, NO_GROUND };
@@ -158,7 +162,9 @@ Verdict judgeUpTo(double steepest, const Land& land, Eigen::Index cell, const Ma
   const Surroundings near = land.surroundingsOf(cell, ground, steepest);
   if (near.ground < FEWEST || near.ground < LEAST_SHARE * near.observed) return Verdict::UNDECIDED;
   const double variance = shape.spread * shape.spread;
-  const double bent = std::pow(std::max(shape.curvature, 1e-9), -2), sloping = std::pow(LIKELY_SLOPE, -2);
+  const double side = land.map().cells().cell_size;
+  const double sloping = std::pow(LIKELY_SLOPE * side, -2);
+  const double bent = std::pow(shape.curvature * side * side, -2);
   Quadric prior;
   prior << 0, sloping, sloping, bent, 2 * bent, bent;
   Normal information = near.products / variance;

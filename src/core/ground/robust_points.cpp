@@ -43,12 +43,15 @@ double skewnessOf(const std::vector<float>& values) {
 /// Noise is symmetric where nothing stands; what grows there makes it skewed.
 bool growsOnTheGround(const RobustSurface& surface, const SortedPoints& points, const Spread& spread,
                       double usual) {
+  constexpr std::size_t FEWEST = 100;
   constexpr double LEAST_SKEWNESS = 0.1;  // forests .12 to 1.6, other scans at most .09
   if (BAND * spread.scale <= usual) return false;
   const double reach = BAND * spread.scale;
   const GroundBand band = bandAround(surface, spread.centre - reach, spread.centre + reach);
   const Mask standing = dilated(cellsReachingAbove(points, band), 1);
-  return skewnessOf(heightsIn(points, band, &standing)) >= LEAST_SKEWNESS;
+  std::vector<float> heights = heightsIn(points, band, &standing);
+  if (heights.size() < FEWEST) heights = heightsIn(points, band);  // plants stand everywhere
+  return skewnessOf(heights) >= LEAST_SKEWNESS;
 }
 
 /// One-sided fits, each with the spread of what lies below the surface.
