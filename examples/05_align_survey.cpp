@@ -1,5 +1,5 @@
-// Makes one map of a survey: its sub-maps are aligned with each other, and their poses found from all pairs
-// and the navigation at once.
+// Makes a map of a survey while it is under way: each sub-map is aligned with those before it that it
+// overlaps, and the poses around it are refined.
 
 #include <pcl/point_types.h>
 
@@ -31,24 +31,30 @@ int main() {
       new pcl_fft_ground::FFTGroundSegmentation<Point>);
   ground->setMaximumObjectSize(1.0);
   survey.setGroundSegmentation(ground);
+
+  // Root mean square errors of the poses, once they are laid on the true ones as a whole.
   std::vector<Eigen::Isometry3d> truth;
-  for (std::size_t i = 0; i < 6; ++i) {
+  const auto millimetres = [&](const std::vector<Eigen::Isometry3d>& poses) {
+    return 1000 * core::poseErrors(survey.getScans(), truth, poses).rms_translation;
+  };
+  for (std::size_t i = 0; i < 10; ++i) {
     const core::SimulatedSubmap submap = simulation.submap(i);
-    survey.addScan(cloudOf(submap.scan), submap.world_from_navigation);
+    const std::size_t id = survey.addScan(cloudOf(submap.scan), submap.world_from_navigation);
     truth.push_back(submap.scan.world_from_scan);
+    survey.update();
+    std::cout << "scan " << id << " lies at " << survey.getPose(id).translation().transpose() << "; errors "
+              << millimetres(survey.getPoses().navigation) << " mm by navigation, "
+              << millimetres(survey.getPoses().global) << " mm on the map\n";
   }
+
+  // All pairs that overlap, and all poses, at once: no worse, and what a survey is to be left with.
   survey.align();
-
   for (const core::PairResult& pair : survey.getPairs())
-    std::cout << "scan " << pair.moving << " on scan " << pair.reference << ": "
-              << (pair.refusal.empty() ? std::to_string(pair.matches) + " matched segments" : pair.refusal)
-              << '\n';
-  std::cout << "scan 1 lies at " << survey.getPose(1).translation().transpose() << '\n';
-
-  const core::SurveyPoses& poses = survey.getPoses();
-  const double before = core::poseErrors(survey.getScans(), truth, poses.navigation).rms_translation;
-  const double after = core::poseErrors(survey.getScans(), truth, poses.global).rms_translation;
-  std::cout << "root mean square error of the poses: " << 1000 * before << " mm by navigation, "
-            << 1000 * after << " mm after the alignment\n";
+    if (pair.status != core::PairStatus::ALIGNED)
+      std::cout << "scan " << pair.moving << " on scan " << pair.reference << ": " << pair.refusal << '\n';
+  const double before = millimetres(survey.getPoses().navigation),
+               after = millimetres(survey.getPoses().global);
+  std::cout << survey.getPoses().edges << " aligned pairs; errors " << before << " mm by navigation, "
+            << after << " mm at the end\n";
   return after < 0.1 * before ? 0 : 1;
 }
