@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "segments/voxel_set.h"
+#include "segments/voxel_contact.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -60,16 +60,25 @@ DisjointSets connectNeighbours(const VoxelSet& occupied) {
 
 }  // namespace
 
+VoxelContact contactOf(const PointsView& points, double leaf_size) {
+  VoxelContact contact;
+  contact.voxel_of_point = assignVoxels(points, leaf_size, contact.occupied);
+  DisjointSets sets = connectNeighbours(contact.occupied);
+  contact.root_of_voxel.resize(contact.occupied.voxels().size());
+  for (std::size_t v = 0; v < contact.root_of_voxel.size(); ++v)
+    contact.root_of_voxel[v] = sets.find(static_cast<VoxelIndex>(v));
+  return contact;
+}
+
 std::vector<std::vector<Eigen::Index>> voxelClusters(const PointsView& points, double leaf_size) {
-  VoxelSet occupied;
-  const std::vector<VoxelIndex> voxel_of_point = assignVoxels(points, leaf_size, occupied);
-  DisjointSets sets = connectNeighbours(occupied);
+  const VoxelContact contact = contactOf(points, leaf_size);
 
   // Voxels are numbered by their first point, so clusters come out ordered by theirs.
-  std::vector<VoxelIndex> cluster_of_voxel(occupied.voxels().size(), NO_VOXEL);
+  std::vector<VoxelIndex> cluster_of_root(contact.root_of_voxel.size(), NO_VOXEL);
   std::vector<std::vector<Eigen::Index>> clusters;
-  for (std::size_t n = 0; n < voxel_of_point.size(); ++n) {
-    VoxelIndex& cluster = cluster_of_voxel[static_cast<std::size_t>(sets.find(voxel_of_point[n]))];
+  for (std::size_t n = 0; n < contact.voxel_of_point.size(); ++n) {
+    const VoxelIndex root = contact.root_of_voxel[static_cast<std::size_t>(contact.voxel_of_point[n])];
+    VoxelIndex& cluster = cluster_of_root[static_cast<std::size_t>(root)];
     if (cluster == NO_VOXEL) {
       cluster = static_cast<VoxelIndex>(clusters.size());
       clusters.emplace_back();
