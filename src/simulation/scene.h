@@ -32,6 +32,12 @@ class Scene {
   const Terrain& terrain() const { return terrain_; }
   const Eigen::AlignedBox2d& extent() const { return extent_; }
   std::size_t size() const { return objects_.size(); }
+  const PlacedObject& object(std::size_t index) const { return objects_[index].object; }
+  /// A horizontal box that holds an object [m].
+  Eigen::AlignedBox2d outlineBox(std::size_t index) const {
+    const Eigen::AlignedBox3d& box = objects_[index].box;
+    return {box.min().head<2>(), box.max().head<2>()};
+  }
   /// Where the origin of an object lies, seen from above [m].
   Eigen::Vector2d position(std::size_t index) const {
     return objects_[index].object.site_from_shape.translation().head<2>();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scan/parameter_check.h"
+#include "simulation/object_truth.h"
 #include "simulation/scan_measurement.h"
 #include "simulation/scan_sensor.h"
 #include "simulation/scene_builder.h"
@@ -76,6 +77,19 @@ SimulatedScan simulateScan(const SimulationParameters& parameters) {
   return measure(
       sightings, scene.terrain(),
       {tiltedFrame(parameters.tilt_degrees), parameters.noise, parameters.seed, outlierOffsets(parameters)});
+}
+
+std::vector<SimulatedObject> simulatedObjects(const SimulationParameters& parameters) {
+  validate(parameters);
+  const ScanGeometry geometry = geometryOf(parameters);
+  const Scene scene = makeScene(parameters, geometry);
+  std::vector<SimulatedObject> objects = objectTruth(scene, scene.extent(), faintHeight(parameters.noise));
+  const Eigen::Isometry3d scan_from_site = tiltedFrame(parameters.tilt_degrees).inverse();
+  for (SimulatedObject& object : objects) {
+    object.centre = scan_from_site * object.centre;
+    object.axis = scan_from_site.linear() * object.axis;
+  }
+  return objects;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -65,4 +65,22 @@ struct SimulatedScan {
  */
 PCL_FFT_GROUND_SIMULATION_EXPORT SimulatedScan simulateScan(const SimulationParameters& parameters);
 
+/// What is known of an object of a simulated scan; metres, in the scan's own frame.
+struct SimulatedObject {
+  std::int32_t segment = 0;                          ///< its number in SimulatedScan::segments
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< amid its length
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();   ///< unit length; of a boulder its longest one
+  double length = 0;                                 ///< along the axis [m]
+  double radius = 0;                                 ///< the largest across the axis [m]
+  double volume = 0;                                 ///< above the ground [m^3], whether seen or not
+  double share_seen = 0;  ///< of its outline, seen from above, where it stands out of the ground: what lies
+                          ///< within the footprint and under no other object
+};
+
+/** The objects of the scan that simulateScan() makes of the same parameters, seen or not, by number.
+ * \throws std::invalid_argument as simulateScan() does
+ */
+PCL_FFT_GROUND_SIMULATION_EXPORT std::vector<SimulatedObject> simulatedObjects(
+    const SimulationParameters& parameters);
+
 }  // namespace pcl_fft_ground::core

@@ -5,6 +5,7 @@
 
 #include "errors.h"
 #include "pcl_fft_ground/core/scan/prepare.h"
+#include "pcl_fft_ground/object_cluster_extraction.h"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
 
 namespace pcl_fft_ground::cli {
@@ -69,14 +70,24 @@ Segmentation segmentCloud(const std::string& path, const Cloud& cloud, Segmenter
 }
 
 void clusterObjects(const Cloud& cloud, const ClusterParameters& parameters, Segmentation& segmentation) {
-  VoxelClusterExtraction<Point> extraction;
-  extraction.setInputCloud(cloud.points);
-  extraction.setIndices(pcl::IndicesConstPtr(new pcl::Indices(segmentation.objects.indices)));
-  extraction.setLeafSize(parameters.leaf_size);
-  extraction.setMinClusterSize(static_cast<pcl::uindex_t>(parameters.min_cluster_size));
-  extraction.setMaxClusterSize(static_cast<pcl::uindex_t>(
-      std::min<std::size_t>(parameters.max_cluster_size, std::numeric_limits<pcl::uindex_t>::max())));
-  extraction.extract(segmentation.clusters);
+  const auto extract = [&](auto& extraction) {
+    extraction.setInputCloud(cloud.points);
+    extraction.setIndices(pcl::IndicesConstPtr(new pcl::Indices(segmentation.objects.indices)));
+    extraction.setLeafSize(parameters.leaf_size);
+    extraction.setMinClusterSize(static_cast<pcl::uindex_t>(parameters.min_cluster_size));
+    extraction.setMaxClusterSize(static_cast<pcl::uindex_t>(
+        std::min<std::size_t>(parameters.max_cluster_size, std::numeric_limits<pcl::uindex_t>::max())));
+    extraction.extract(segmentation.clusters);
+  };
+  if (parameters.clusters == Clusters::CONTACT) {
+    VoxelClusterExtraction<Point> extraction;
+    extract(extraction);
+  } else {
+    ObjectClusterExtraction<Point> extraction;
+    extraction.setMinimumObjectSize(parameters.minimum_object_size);
+    extraction.setUpDirection(segmentation.surface.frame_from_input.linear().row(2).transpose());
+    extract(extraction);
+  }
 
   segmentation.segments.assign(cloud.points->size(), 0);
   for (std::size_t k = 0; k < segmentation.clusters.size(); ++k)

@@ -16,9 +16,17 @@
 
 namespace pcl_fft_ground::cli {
 
+/// What becomes a segment.
+enum class Clusters {
+  OBJECTS,  ///< things that touch are told apart
+  CONTACT   ///< all that touches, as in the paper
+};
+
 /// Settings of the clustering of objects into segments.
 struct ClusterParameters {
+  Clusters clusters = Clusters::OBJECTS;
   double leaf_size = 0.02;                                      ///< side of a voxel [m], > 0
+  double minimum_object_size = 0.09;                            ///< of OBJECTS [m], > 0
   std::size_t min_cluster_size = 10;                            ///< points
   std::size_t max_cluster_size = static_cast<std::size_t>(-1);  ///< points
 };

@@ -14,12 +14,12 @@ namespace {
 
 /** When two touching parts are one body: log-odds, a logistic discriminant of features without a unit.
  *
- * Fitted to all decisions that came up while the parts of simulated wrecks, pipes and reefs (10, 30 and 50 % of
- * objects, seeds 71 to 78) were joined; five more features that were tried (ratio of the areas, share of
+ * Fitted to all decisions that came up while the parts of simulated wrecks, pipes and reefs (10, 30 and 50 %
+ * of objects, seeds 71 to 78) were joined; five more features that were tried (ratio of the areas, share of
  * cliffs, length of the border, step of the tops, number of neighbours) changed nothing.
  */
 struct OneBody {
-  double always = -0.46;   ///< includes +0.3: a body in two costs more than two bodies in one
+  double always = -0.46;  ///< includes +0.3: a body in two costs more than two bodies in one
   double crease = -1.10;  ///< mean concavity of the border: bodies meet in creases
   double open = 7.77;     ///< share of the border without a crease: two bodies are parted all along
   double hollow = -0.73;  ///< empty area between the two over the smaller one's: a body is nearly convex
@@ -35,15 +35,15 @@ constexpr OneBody ONE_BODY;
 /// Of parts with a border below this, nobody has to ask whether they are one: basins that noise has made.
 constexpr double NO_CREASE = 0.15;
 
-/** When two parts of a cluster that need not touch are pieces of one straight body, another one across it. All
- * have to hold; chosen on the same seeds. */
+/** When two parts of a cluster that need not touch are pieces of one straight body, another one across it.
+ * All have to hold; chosen on the same seeds. */
 struct Straight {
-  double least_part = 0.3;   ///< area of either, of that of the smallest object: less has no direction
-  double growth = 0.15;      ///< by how much both are wider than the wider one, at most
-  double length = 0.9;       ///< log of the joint length over width, at least: 2.5 times as long as wide
-  double width = 0.4;        ///< log of the ratio of the widths, at most
-  double turn = 0.03;        ///< of the larger one against the joint axis: sin^2 times log of length over width
-  double step = 0.1;         ///< of the height off the larger one's slope, of its width, at most
+  double least_part = 0.3;  ///< area of either, of that of the smallest object: less has no direction
+  double growth = 0.15;     ///< by how much both are wider than the wider one, at most
+  double length = 0.9;      ///< log of the joint length over width, at least: 2.5 times as long as wide
+  double width = 0.4;       ///< log of the ratio of the widths, at most
+  double turn = 0.03;  ///< of the larger one against the joint axis: sin^2 times log of length over width
+  double step = 0.1;   ///< of the height off the larger one's slope, of its width, at most
 };
 constexpr Straight STRAIGHT;
 
@@ -57,7 +57,9 @@ double deviationAlong(const Part& part, const Eigen::Vector2d& direction) {
   return std::sqrt(part.spread.varianceAlong(direction));
 }
 
-Eigen::Vector2d across(const Eigen::Vector2d& axis) { return {-axis.y(), axis.x()}; }
+Eigen::Vector2d across(const Eigen::Vector2d& axis) {
+  return {-axis.y(), axis.x()};
+}
 
 SpreadAxes axesOfBoth(const Part& a, const Part& b) {
   Spread both = a.spread;
@@ -74,8 +76,8 @@ double oddsOfOneBody(const Part& larger, const Part& smaller, const Border& bord
   const double crease = border.crease / border.length;
   const SpreadAxes both = axesOfBoth(larger, smaller);
   const Eigen::Vector2d normal = across(larger.axes.axis);
-  const double offset = std::abs(normal.dot(smaller.spread.mean() - larger.spread.mean())) /
-                        (HALF_WIDTH * larger.axes.width);
+  const double offset =
+      std::abs(normal.dot(smaller.spread.mean() - larger.spread.mean())) / (HALF_WIDTH * larger.axes.width);
   const double coaxial = elongation(larger.axes, 1.5) * std::clamp(1 - offset, 0.0, 1.0);
   const double collar =
       coaxial * std::min(1.0, std::abs(std::log(deviationAlong(smaller, normal) / larger.axes.width)));
@@ -146,7 +148,8 @@ class StraightBodies {
     const Part& larger = a_is_larger ? a : b;
     const Part& smaller = a_is_larger ? b : a;
     const SpreadAxes both = axesOfBoth(larger, smaller);
-    if (elongation(both, 2) < STRAIGHT.length || growthOf(both, larger, smaller) > STRAIGHT.growth) return NEVER;
+    if (elongation(both, 2) < STRAIGHT.length || growthOf(both, larger, smaller) > STRAIGHT.growth)
+      return NEVER;
     const Eigen::Vector2d normal = across(both.axis);
     const double width = std::abs(std::log(deviationAlong(larger, normal) / deviationAlong(smaller, normal)));
     const double turn = elongation(larger.axes, 1.5) * (1 - std::pow(larger.axes.axis.dot(both.axis), 2));
@@ -198,7 +201,8 @@ std::vector<std::vector<Eigen::Index>> pointsOfParts(const Relief& relief, PartG
     ++sizes[static_cast<std::size_t>(cluster_of_column[static_cast<std::size_t>(c)])];
   std::vector<std::size_t> order(sizes.size()), rank(sizes.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
   std::vector<std::vector<Eigen::Index>> clusters(sizes.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     rank[order[k]] = k;

@@ -79,12 +79,10 @@ Relief::Relief(const PointsView& points, double leaf_size) {
       cluster = static_cast<std::int32_t>(first_.size());
       first_.push_back(voxel);
     }
-    blocks.block_of_voxel[static_cast<std::size_t>(v)] =
-        blocks_.findOrInsert({voxel.i, voxel.j, cluster});
+    blocks.block_of_voxel[static_cast<std::size_t>(v)] = blocks_.findOrInsert({voxel.i, voxel.j, cluster});
   }
-  const std::size_t quarters =
-      static_cast<std::size_t>(std::count_if(blocks.sums.begin(), blocks.sums.end(),
-                                             [](const HeightSum& sum) { return sum.count > 0; }));
+  const std::size_t quarters = static_cast<std::size_t>(std::count_if(
+      blocks.sums.begin(), blocks.sums.end(), [](const HeightSum& sum) { return sum.count > 0; }));
   const bool dense = static_cast<double>(points.cols()) >= ENOUGH_POINTS * static_cast<double>(quarters);
   divisions_ = dense ? 2 : 1;
   side_ = leaf_size / divisions_;
@@ -144,7 +142,8 @@ void Relief::connect() {
   for (std::size_t b = 0; b < around.size(); ++b) {
     const Voxel& block = blocks_.voxels()[b];
     for (int n = 0; n < 9; ++n)
-      around[b][static_cast<std::size_t>(n)] = blocks_.find({block.i + n % 3 - 1, block.j + n / 3 - 1, block.k});
+      around[b][static_cast<std::size_t>(n)] =
+          blocks_.find({block.i + n % 3 - 1, block.j + n / 3 - 1, block.k});
   }
   const auto floorDivided = [&](int value) { return value < 0 ? -1 : value / divisions_; };
   neighbours_.resize(size());
@@ -157,8 +156,9 @@ void Relief::connect() {
                                      [static_cast<std::size_t>(block_x + 1 + 3 * (block_y + 1))];
       const int sub = x - block_x * divisions_ + 2 * (y - block_y * divisions_);
       neighbours_[c][d] =
-          block == NO_VOXEL ? NO_COLUMN
-                            : columns_of_block_[static_cast<std::size_t>(block)][static_cast<std::size_t>(sub)];
+          block == NO_VOXEL
+              ? NO_COLUMN
+              : columns_of_block_[static_cast<std::size_t>(block)][static_cast<std::size_t>(sub)];
     }
 }
 
@@ -220,7 +220,8 @@ std::vector<std::int32_t> basins(const Relief& relief, const std::vector<float>&
     ColumnIndex lowest = NO_COLUMN;
     for (const ColumnIndex n : relief.neighbours(c)) {
       if (n == NO_COLUMN || basin[static_cast<std::size_t>(n)] < 0) continue;
-      if (lowest == NO_COLUMN || values[static_cast<std::size_t>(n)] < values[static_cast<std::size_t>(lowest)])
+      if (lowest == NO_COLUMN ||
+          values[static_cast<std::size_t>(n)] < values[static_cast<std::size_t>(lowest)])
         lowest = n;
     }
     basin[c] = lowest == NO_COLUMN ? count++ : basin[static_cast<std::size_t>(lowest)];

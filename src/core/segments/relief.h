@@ -23,8 +23,8 @@ constexpr std::array<int, 8> STEP_Y = {0, 1, 1, 1, 0, -1, -1, -1};
  */
 class Relief {
  public:
-  /// \param points finite points \param leaf_size side of the voxels of contact [m]; a column is half as wide,
-  /// where the points are dense enough for that
+  /// \param points finite points \param leaf_size side of the voxels of contact [m]; a column is half as
+  /// wide, where the points are dense enough for that
   Relief(const PointsView& points, double leaf_size);
 
   std::size_t size() const { return height_.size(); }

@@ -117,7 +117,8 @@ SpreadAxes axesOf(const Spread& spread) {
   const double vxy = spread.xy / spread.count - spread.mean().x() * spread.mean().y();
   const double middle = 0.5 * (vxx + vyy), half = 0.5 * (vxx - vyy), radius = std::hypot(half, vxy);
   const double angle = 0.5 * std::atan2(vxy, half);
-  return {std::sqrt(middle + radius), std::sqrt(std::max(COLUMN_VARIANCE, middle - radius)),
+  return {std::sqrt(middle + radius),
+          std::sqrt(std::max(COLUMN_VARIANCE, middle - radius)),
           {std::cos(angle), std::sin(angle)}};
 }
 
@@ -167,7 +168,9 @@ std::int32_t PartGraph::find(std::int32_t part) {
   return part;
 }
 
-std::int32_t PartGraph::partAt(std::size_t column) { return find(part_of_column_[column]); }
+std::int32_t PartGraph::partAt(std::size_t column) {
+  return find(part_of_column_[column]);
+}
 
 std::int32_t PartGraph::join(std::int32_t a, std::int32_t b) {
   const auto degree = [&](std::int32_t part) { return borders(part).size(); };
@@ -197,8 +200,8 @@ std::int32_t PartGraph::join(std::int32_t a, std::int32_t b) {
 double PartGraph::costOf(std::int32_t a, const Border& border, const Cost& cost) const {
   const Part& one = part(a);
   const Part& other = part(border.other);
-  const bool is_larger = one.spread.count > other.spread.count ||
-                         (one.spread.count == other.spread.count && a < border.other);
+  const bool is_larger =
+      one.spread.count > other.spread.count || (one.spread.count == other.spread.count && a < border.other);
   return is_larger ? cost(one, other, border) : cost(other, one, border);
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 #include "command_line.h"
@@ -9,6 +10,7 @@
 #include "commands/segment/segment_report.h"
 #include "errors.h"
 #include "io/output_file.h"
+#include "pcl_fft_ground/core/segments/object_clusters.h"
 #include "progress.h"
 #include "report/report.h"
 
@@ -54,6 +56,12 @@ po::options_description commandOptions() {
       "directory for the results; other files in it stay");
   add("method", po::value<std::string>()->default_value("fft")->value_name("NAME"),
       ("how ground is told from objects: " + methodChoice()).c_str());
+  add("clusters", po::value<std::string>()->value_name("NAME"),
+      "what becomes a segment: objects, things that touch told apart; or contact, all that touches, as in "
+      "the paper (objects; fft-lowpass: contact)");
+  add("min-object-size", po::value<double>()->value_name("M"),
+      "objects: size of the smallest object [m], above 0: of a heap, nothing smaller is cut off (an eighth "
+      "of --max-object-size; without that 4.5 leaf sizes)");
   add("leaf-size", po::value<double>()->value_name("M"),
       "side of the voxels that cluster the objects [m], above 0; no less than the spacing of the points (the "
       "cell size)");
@@ -80,14 +88,30 @@ std::size_t clusterSize(const po::variables_map& values, const std::string& opti
   return static_cast<std::size_t>(size);
 }
 
+/// A length that the user gave, if any.
+std::optional<double> lengthOption(const po::variables_map& values, const std::string& option) {
+  if (values.count(option) == 0) return std::nullopt;
+  const auto length = values[option].as<double>();
+  if (std::isfinite(length) && length > 0) return length;
+  std::ostringstream message;
+  message << "--" << option << " " << length << ": allowed is a finite number of metres above 0";
+  throw UsageError(message.str());
+}
+
+Clusters clustersNamed(const po::variables_map& values) {
+  if (values.count("clusters") == 0)
+    return values["method"].as<std::string>() == "fft-lowpass" ? Clusters::CONTACT : Clusters::OBJECTS;
+  const auto name = values["clusters"].as<std::string>();
+  if (name == "objects") return Clusters::OBJECTS;
+  if (name == "contact") return Clusters::CONTACT;
+  throw UsageError("--clusters " + name + ": allowed is objects or contact");
+}
+
 ClusterParameters clusterParameters(const po::variables_map& values) {
   ClusterParameters parameters;
-  if (values.count("leaf-size") != 0) parameters.leaf_size = values["leaf-size"].as<double>();
-  if (!std::isfinite(parameters.leaf_size) || parameters.leaf_size <= 0) {
-    std::ostringstream message;
-    message << "--leaf-size " << parameters.leaf_size << ": allowed is a finite number of metres above 0";
-    throw UsageError(message.str());
-  }
+  parameters.clusters = clustersNamed(values);
+  parameters.leaf_size = lengthOption(values, "leaf-size").value_or(parameters.leaf_size);
+  lengthOption(values, "min-object-size");
   parameters.min_cluster_size = clusterSize(values, "min-cluster-size", parameters.min_cluster_size);
   parameters.max_cluster_size = clusterSize(values, "max-cluster-size", parameters.max_cluster_size);
   if (parameters.max_cluster_size < parameters.min_cluster_size)
@@ -97,11 +121,27 @@ ClusterParameters clusterParameters(const po::variables_map& values) {
   return parameters;
 }
 
+/// Fills in the lengths that follow from what the segmenter found or was told.
+void chooseLengths(const po::variables_map& values, const Segmenter& segmenter, ClusterParameters& clusters) {
+  if (values.count("leaf-size") == 0) clusters.leaf_size = segmenter.cellSize();
+  const std::optional<double> largest = lengthOption(values, "max-object-size");
+  const double smallest =
+      largest ? core::MINIMUM_OBJECT_SHARE * *largest : core::MINIMUM_OBJECT_LEAVES * clusters.leaf_size;
+  clusters.minimum_object_size = lengthOption(values, "min-object-size").value_or(smallest);
+}
+
 ordered_json describeClusterParameters(ordered_json parameters, const ClusterParameters& clusters,
                                        const po::variables_map& values) {
   const auto source = [&](const std::string& option, const char* otherwise) {
     return values.count(option) != 0 ? "option" : otherwise;
   };
+  const bool objects = clusters.clusters == Clusters::OBJECTS;
+  parameters["clusters"] = {{"value", objects ? "objects" : "contact"},
+                            {"from", source("clusters", "default")}};
+  const char* const smallest = values.count("max-object-size") != 0 ? "max-object-size" : "leaf-size";
+  if (objects)
+    parameters["min-object-size"] = {{"value", clusters.minimum_object_size},
+                                     {"from", source("min-object-size", smallest)}};
   parameters["leaf-size"] = {{"value", clusters.leaf_size}, {"from", source("leaf-size", "cell-size")}};
   parameters["min-cluster-size"] = {{"value", clusters.min_cluster_size},
                                     {"from", source("min-cluster-size", "default")}};
@@ -140,7 +180,7 @@ void segment(const po::variables_map& values) {
   Segmentation segmentation = segmentCloud(input, cloud, segmenter);
   if (values["height"].as<bool>()) segmentation.heights = segmenter.filter->getHeightAboveGround();
   progress.begin("cluster", "Clustering the objects");
-  if (values.count("leaf-size") == 0) clusters.leaf_size = segmenter.cellSize();
+  chooseLengths(values, segmenter, clusters);
   clusterObjects(cloud, clusters, segmentation);
   progress.begin("write", "Writing to " + directory);
   makeDirectory(directory);
