@@ -5,6 +5,7 @@
 #include <pcl/point_types.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -73,11 +74,11 @@ TEST(ObjectClusterExtraction, KeepsToIndicesAndFinitePoints) {
   Extraction extraction = extractionOf(cloud);
   extraction.setIndices(indices);
   std::vector<int> times(cloud->size(), 0);
-  for (const pcl::PointIndices& cluster : extract(extraction))
-    for (std::size_t k = 0; k < cluster.indices.size(); ++k) {
-      ++times[static_cast<std::size_t>(cluster.indices[k])];
-      if (k > 0) EXPECT_GT(cluster.indices[k - 1], cluster.indices[k]) << "not in the order of the list";
-    }
+  for (const pcl::PointIndices& cluster : extract(extraction)) {
+    EXPECT_TRUE(std::is_sorted(cluster.indices.rbegin(), cluster.indices.rend()))
+        << "not in the list's order";
+    for (const pcl::index_t n : cluster.indices) ++times[static_cast<std::size_t>(n)];
+  }
   for (std::size_t n = 0; n < times.size(); ++n) EXPECT_EQ(times[n], n >= 5 && n != 10 ? 1 : 0) << n;
 }
 
