@@ -17,7 +17,7 @@ tidy() { # REGEX OF FILES CMAKE OPTION...
     cat "$build.log" >&2
     exit 1
   }
-  run-clang-tidy -quiet -p "$build" -j "$(cmake/build_jobs.sh)" "$1" >"$build.log" 2>&1 || {
+  run-clang-tidy -quiet -extra-arg=-std=c++17 -p "$build" -j "$(cmake/build_jobs.sh)" "$1" >"$build.log" 2>&1 || {
     grep -E 'error|warning' "$build.log" | sort -u
     echo "clang-tidy found the above; all of its words are in $build.log" >&2
     exit 1
