@@ -58,6 +58,7 @@ class ScanDescriber {
   double voxelSizeFor(const pcl::PointCloud<PointT>& cloud, const pcl::Indices* indices = nullptr) const;
 
   /** Describes a cloud in a frame whose z axis is up and whose origin is that of the cloud.
+   * \param cloud in its own frame; points that are not finite do not count
    * \param indices the points to take; null: all
    * \param voxel_size side of a voxel [m]; 0: voxelSizeFor() the cloud
    * \return a scan without points, and getError() says why, where the cloud has no finite point, an index
