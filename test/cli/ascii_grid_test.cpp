@@ -1,4 +1,4 @@
-#include "io/ascii_grid.h"
+#include "io/raster_files.h"
 
 #include <cmath>
 #include <limits>

@@ -44,7 +44,8 @@ TEST_F(CloudFile, OtherTextColumns) {
   EXPECT_TRUE(std::isnan(floatsOf(named.fields, "intensity").back()));
   EXPECT_TRUE(named.labels.empty());
   const Cloud counted = readCloud(makeFile("a.xyz", "1 2 3 0.5 255 0\n"));
-  EXPECT_EQ(counted.fields.fields.size(), 3u);
+  EXPECT_EQ(floatsOf(counted.fields, "field4"), std::vector<float>{0.5f});
+  EXPECT_EQ(floatsOf(counted.fields, "field6"), std::vector<float>{0});
   EXPECT_TRUE(counted.labels.empty());
   EXPECT_EQ(readCloud(makeFile("b.xyz", "1 2 3 nan\n4 5 6 1\n")).labels, (std::vector<int>{2, 1}));
 }
@@ -56,15 +57,15 @@ TEST_F(CloudFile, MalformedTextNamesTheLine) {
   expectError("d.csv", "1,2,3\n4,,6\n", "line 2 is malformed: '4,,6'");
   expectError("e.xyz", "x y z\nx y z\n1 2 3\n", "line 2 is malformed");
   expectError("f.xyz", "1 2\n3 4\n", "line 1 is malformed");
-  expectError("g.xyz", "1 2 3 0\n1 2 3 0.5\n", "the label a whole number");
+  expectError("g.xyz", "x y z label\n1 2 3 0\n1 2 3 0.5\n", "the label a whole number");
   expectError("h.xyz", "1 2 1e999\n", "line 1 is malformed");
-  expectError("i.xyz", "x y height\n1 2 3\n", "x, y and z");
+  expectError("i.xyz", "id x depth\n1 2 3\n", "'id, x, depth'");
   expectError("j.xyz", "1 2 0x3\n", "line 1 is malformed");
   expectError("k.xyz", "1 2 \x1b[31m\x07" + std::string(5000, 'a') + "\n",
               "line 1 is malformed: '1 2 ?[31m?aaa");
   expectError("l.xyz", "# nothing here\n\n", "holds no points");
   expectError("m.xyz", "x y z\n", "holds no points");
-  expectError("n.xyz", std::string("1 2 3\n\0\n", 8), "neither PCD nor PLY nor text");
+  expectError("n.xyz", std::string("1 2 3\n\0\n", 8), "neither PCD nor PLY nor LAS nor text");
 }
 
 TEST_F(CloudFile, PlyWithFacesListsAndOtherElementsInFront) {
@@ -174,7 +175,7 @@ TEST_F(CloudFile, PcdHeadersWithBadFieldsAreRefused) {
   expectError("b.pcd", header("4 4 0", "F F F", "1 1 1"), "'0'");
   expectError("c.pcd", header("4 4 -4", "F F F", "1 1 1"), "'-4'");
   expectError("d.pcd", header("4 4 3", "F F F", "1 1 1"), "'3'");
-  expectError("e.pcd", header("4 4 4", "F F F", "1 1 0"), "'0'");
+  expectError("e.pcd", header("4 4 4", "F F F", "1 1 0"), "is not 2 numbers");
   expectError("f.pcd", header("4 4 4", "F F F", "1 1 -1"), "'-1'");
   expectError("g.pcd", header("4 4 4", "F F F", "1 1 4294967297"), "'4294967297'");
   expectError("h.pcd", header("4 4 4", "F F F", "1 1 16777216"), "16777216");

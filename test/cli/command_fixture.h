@@ -13,7 +13,7 @@
 
 #include "commands/commands.h"
 #include "io/cloud_fields.h"
-#include "io/pcd_cloud.h"
+#include "io/cloud_file.h"
 #include "temporary_folder.h"
 
 namespace pcl_fft_ground::cli {

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "cloud_file_fixture.h"
+#include "las_bytes.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -22,6 +23,8 @@ class DamagedCloudFile : public CloudFile, public ::testing::WithParamInterface<
       pcl::PLYWriter().write(path, table, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity(),
                              GetParam() == "binary.ply", true);
     }
+    if (GetParam() == "points.las") makeFile("valid", lasFile());
+    if (GetParam() == "floats.bin") makeFile("valid", std::string(80, '\0'));
     if (GetParam() == "text.csv") makeFile("valid", "x;y;z;label\n1.5;2;3;0\n4;5e1;nan;1\n-7;8;9;2\n");
     return contentOf(path).substr(0, usedSize(path));
   }
@@ -107,7 +110,7 @@ TEST_P(DamagedCloudFile, PiecesDoubledAndRemoved) {
 
 INSTANTIATE_TEST_SUITE_P(EveryKind, DamagedCloudFile,
                          ::testing::Values("ascii.pcd", "binary.pcd", "compressed.pcd", "ascii.ply",
-                                           "binary.ply", "text.csv"),
+                                           "binary.ply", "text.csv", "points.las", "floats.bin"),
                          [](const auto& parameter) {
                            std::string name = parameter.param;
                            name[name.find('.')] = '_';

@@ -1,6 +1,8 @@
 #include "io/cloud_fields.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -122,6 +124,21 @@ const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, std::strin
   const auto found =
       std::find_if(cloud.fields.begin(), cloud.fields.end(), [&](const auto& f) { return f.name == name; });
   return found == cloud.fields.end() ? nullptr : &*found;
+}
+
+bool isLabelName(std::string_view name) {
+  static const std::array<std::string_view, 6> names{"label",        "class",        "classification",
+                                                     "scalar_label", "scalar_class", "scalar_classification"};
+  std::string plain(name);
+  for (char& c : plain) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::find(names.begin(), names.end(), plain) != names.end();
+}
+
+const pcl::PCLPointField* findLabelField(const pcl::PCLPointCloud2& cloud) {
+  const pcl::PCLPointField* found = findField(cloud, "label");
+  for (const auto& field : cloud.fields)
+    if (found == nullptr && isLabelName(field.name)) found = &field;
+  return found != nullptr && found->count == 1 ? found : nullptr;
 }
 
 double loadNumber(const std::uint8_t* bytes, std::uint8_t datatype) {

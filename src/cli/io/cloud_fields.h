@@ -45,6 +45,13 @@ void allocatePoints(pcl::PCLPointCloud2& cloud, std::size_t width, std::size_t h
 /// The first field of a name, or null.
 const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, std::string_view name);
 
+/// Whether a field of this name, in any case, says what each point is: label, class, classification, or one
+/// of these as CloudCompare writes them.
+bool isLabelName(std::string_view name);
+
+/// The field `label`, else the first one with another name that isLabelName(), of one value a point; or null.
+const pcl::PCLPointField* findLabelField(const pcl::PCLPointCloud2& cloud);
+
 /// The stored value of a field type as a double; `bytes` need not be aligned.
 double loadNumber(const std::uint8_t* bytes, std::uint8_t datatype);
 

@@ -12,7 +12,10 @@ using Eigen::Vector2d;
 
 constexpr double kLeft = 108.0;
 constexpr double kTop = 56.0;
-constexpr double kLongest = 800.0;    // the longest side of a map
+constexpr double kLongest = 800.0;  // the longest side of a map,
+constexpr double kWidest = 1600.0;  // or more, where cells would be smaller than this
+constexpr double kTallest = 1100.0;
+constexpr double kCell = 3.0;
 constexpr double kShortest = 4.0;     // a side shorter than this could not be seen
 constexpr double kNarrowest = 560.0;  // page width that titles and legends need
 constexpr double kBarBelow = 280.0;   // maps lower than this have the colour bar below, not beside
@@ -24,7 +27,8 @@ MapPage layOutMap(const GridImage& image, MapKey key) {
   const Vector2d cells(static_cast<double>(std::max<Index>(image.values.rows(), 1)),
                        static_cast<double>(std::max<Index>(image.values.cols(), 1)));
   const Vector2d high = image.origin + image.cell_size * cells;
-  const double scale = kLongest / cells.maxCoeff();  // pixels per cell
+  const double wanted = std::min({kCell, kWidest / cells.x(), kTallest / cells.y()});
+  const double scale = std::max(kLongest / cells.maxCoeff(), wanted);  // pixels per cell
   const double width = std::max(kShortest, std::round(scale * cells.x()));
   const double height = std::max(kShortest, std::round(scale * cells.y()));
   const bool bar_beside = key == MapKey::COLOUR_BAR && height >= kBarBelow;

@@ -21,8 +21,9 @@ struct MapPage {
   std::string frame;  ///< whose x and y axes the plot has
 };
 
-/// The page for a grid. The longest side of every map has one length; low maps have a lying colour bar below
-/// them, the others an upright one on the right. An empty grid is laid out as a single cell.
+/// The page for a grid. The longest side of every map has one length, or more where its cells would be too
+/// small to be seen; low maps have a lying colour bar below them, the others an upright one on the right. An
+/// empty grid is laid out as a single cell.
 MapPage layOutMap(const GridImage& image, MapKey key);
 
 /// The page with the map's pixels, its axes in metres and its title; the key is yet to be drawn.

@@ -1,6 +1,7 @@
 #include "pictures/pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -21,6 +22,8 @@ using Eigen::Vector2d;
 
 const Colour kGround = {0.70, 0.70, 0.70};
 const Colour kObject = {0.13, 0.36, 0.86};
+const Colour kNoSegment = {0.84, 0.84, 0.84};
+constexpr double kPale = 0.3;  // share of the colour of what is high above the ground in that of the cell
 constexpr std::uint32_t kNothing = 0xffffffffU;
 
 /// Size of a cell of a grid reduced to rows x cols [m].
@@ -36,6 +39,11 @@ Index pixels(double length) {
 ArrayXXd shadeFor(const GridImage& image, const ArrayXXd& reduced) {
   if (reduced.size() == 0) return reduced;
   return hillShade(reduced, spacingOf(image, reduced.rows(), reduced.cols()));
+}
+
+Colour mixed(const Colour& first, const Colour& second, double share_of_second) {
+  const auto mix = [&](double a, double b) { return a + share_of_second * (b - a); };
+  return {mix(first.red, second.red), mix(first.green, second.green), mix(first.blue, second.blue)};
 }
 
 std::string withShare(const std::string& name, long long count, long long total) {
@@ -137,13 +145,16 @@ void drawLabels(const std::filesystem::path& path, const std::string& title, con
   const Index width = pixels(page.plot.area.width);
   const Index height = pixels(page.plot.area.height);
   const ArrayXXd light = shadeFor(shade, reducedMean(shade.values, width, height));
+  const std::array<Colour, 3> colours{kGround, kObject, mixed(kGround, kObject, kPale)};  // by CellClass
   const Pixels map = shadedClasses(reducedMode(classes, width, height), light,
-                                   [](int kind) { return kind == 0 ? kGround : kObject; });
+                                   [&](int kind) { return colours[static_cast<std::size_t>(kind)]; });
   Canvas canvas = startMap(page, title, map);
   if (!(classes >= 0).any()) writeInMiddle(canvas, page.plot, "no points");
   const long long total = counts.ground + counts.objects + counts.neither;
   std::vector<LegendEntry> legend = {{kGround, withShare("ground", counts.ground, total)},
                                      {kObject, withShare("objects", counts.objects, total)}};
+  if ((classes == static_cast<int>(CellClass::ABOVE_GROUND)).any())
+    legend.push_back({colours.back(), "objects high above ground"});
   if (counts.neither > 0) legend.push_back({{1.0, 1.0, 1.0}, withShare("neither", counts.neither, total)});
   drawLegend(canvas, page.key.y, legend);
   canvas.write(path);
@@ -157,19 +168,21 @@ void drawSegments(const std::filesystem::path& path, const std::string& title, c
   const Index height = pixels(page.plot.area.height);
   const ArrayXXi shown = reducedMode(segments, width, height);
   const ArrayXXd light = shadeFor(shade, reducedMean(shade.values, width, height));
-  std::map<int, Colour> colours = {{0, {0.84, 0.84, 0.84}}};
-  const Pixels map = shadedClasses(shown, light, [&colours](int segment) {
+  std::map<int, Colour> colours = {{0, kNoSegment}};
+  const Pixels map = shadedClasses(shown, light, [&](int segment) {
     const auto known = colours.find(segment);
-    return known != colours.end() ? known->second
-                                  : colours.emplace(segment, segmentColour(segment)).first->second;
+    if (known != colours.end()) return known->second;
+    const Colour colour =
+        segment <= count ? segmentColour(segment) : mixed(kNoSegment, segmentColour(segment - count), kPale);
+    return colours.emplace(segment, colour).first->second;
   });
   Canvas canvas = startMap(page, title, map);
   if (!(segments >= 0).any()) writeInMiddle(canvas, page.plot, "no points");
-  if (shown.size() > 0) numberSegments(canvas, page.plot, shown);
+  if (shown.size() > 0) numberSegments(canvas, page.plot, (shown > count).select(shown - count, shown));
   const std::string noun = count == 1 ? " segment" : " segments";
   const std::string numbering = count > 0 ? ", numbered by falling size" : "";
   drawLegend(canvas, page.key.y,
-             {{{0.84, 0.84, 0.84}, "ground and unclustered points"},
+             {{kNoSegment, "ground and unclustered points"},
               {segmentColour(1), groupedNumber(count) + noun + numbering}});
   canvas.write(path);
 }

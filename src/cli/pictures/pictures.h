@@ -48,14 +48,22 @@ struct LabelCounts {
 void drawHeights(const std::filesystem::path& path, const std::string& title, const GridImage& image,
                  const std::string& label, const std::optional<ValueRange>& range = std::nullopt);
 
-/// labels.png: ground grey, objects blue as in the paper's Fig. 3, cells without points white. `classes` has
-/// the size of `shade`, the elevation that gives the relief: -1 no points, 0 ground, 1 object. The legend
-/// gives `counts`.
+/// What there is in a cell of labels.png.
+enum class CellClass {
+  GROUND,
+  OBJECT,
+  ABOVE_GROUND  ///< an object so high above ground which is seen that it should not hide it
+};
+
+/// labels.png: ground grey, objects blue as in the paper's Fig. 3, pale where they are high above the ground,
+/// cells without points white. `classes` has the size of `shade`, the elevation that gives the relief: -1 no
+/// points, else a CellClass. The legend gives `counts`.
 void drawLabels(const std::filesystem::path& path, const std::string& title, const GridImage& shade,
                 const Eigen::ArrayXXi& classes, const LabelCounts& counts);
 
 /// segments.png: each segment in a colour of its own, the largest ones numbered. `segments` has the size of
-/// `shade`: -1 no points, 0 no segment, k >= 1 segment k. The legend gives `count`, the number of segments.
+/// `shade`: -1 no points, 0 no segment, k from 1 to `count` segment k, count + k the same, pale, as it is
+/// high above ground which is seen. The legend gives `count`, the number of segments.
 void drawSegments(const std::filesystem::path& path, const std::string& title, const GridImage& shade,
                   const Eigen::ArrayXXi& segments, int count);
 

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "pcl_fft_ground/core/grid/elevation_grid.h"
+
 namespace pcl_fft_ground::cli {
 
 /// Source cells [begin, begin + count) that one cell of a smaller grid stands for.
@@ -27,6 +29,16 @@ Eigen::ArrayXXi reducedMode(const Eigen::ArrayXXi& classes, Eigen::Index max_x, 
 /// light, 0 lies as the terrain does on the whole, so that a plane is 0 everywhere, however tilted. The
 /// contrast adapts to the terrain. 0 where unknown. `spacing` is the size of a cell [m] along x and y.
 Eigen::ArrayXXd hillShade(const Eigen::ArrayXXd& heights, const Eigen::Vector2d& spacing);
+
+/// Number of the cell, in the order of an Eigen array of the grid's size, above which a point of the level
+/// frame lies; -1 if it is beside the grid.
+inline Eigen::Index cellBelow(const core::GridGeometry& cells, const Eigen::Vector3d& point) {
+  const Eigen::Array2d place = ((point.head<2>() - cells.origin) / cells.cell_size).array().floor();
+  const bool is_inside = (place >= 0).all() && place.x() < static_cast<double>(cells.rows) &&
+                         place.y() < static_cast<double>(cells.cols);
+  return is_inside ? static_cast<Eigen::Index>(place.y()) * cells.rows + static_cast<Eigen::Index>(place.x())
+                   : -1;
+}
 
 /// Values from `low` to `high`, low < high.
 struct ValueRange {

@@ -6,7 +6,7 @@
 
 #include "methods/segmentation.h"
 #include "pcl_fft_ground/core/scan/frame.h"
-#include "pictures/grid_cell.h"
+#include "pictures/raster.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

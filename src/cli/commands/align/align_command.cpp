@@ -11,6 +11,7 @@
 #include "io/output_file.h"
 #include "io/scanner.h"
 #include "progress.h"
+#include "reading_options.h"
 #include "report/report.h"
 
 namespace pcl_fft_ground::cli {
@@ -22,10 +23,11 @@ using nlohmann::ordered_json;
 constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground align REFERENCE MOVING -o DIR [options]
 
 Aligns two overlapping scans by the objects in them (S-ICP): both are segmented, segments that are the same thing are
-matched, and ICP with correspondences in matched segments only moves MOVING on to REFERENCE. The files are PCD, PLY or
-text, in metres, z roughly up. Where the scans lie to each other is first taken from their VIEWPOINT (the pose of the
-scan by navigation) or from --guess; the default search mends 0.6 m and 8 degrees, --search wide 2.5 m and 25 degrees.
-What cannot be aligned with confidence is refused, and the reason printed: a refusal is a result, too (exit status 0).
+matched, and ICP with correspondences in matched segments only moves MOVING on to REFERENCE. The files are PCD, PLY,
+LAS, .bin or text, in metres, z roughly up. Where the scans lie to each other is first taken from their VIEWPOINT (the
+pose of the scan by navigation) or from --guess; the default search mends 0.6 m and 8 degrees, --search wide 2.5 m and
+25 degrees. What cannot be aligned with confidence is refused, and the reason printed: a refusal is a result, too
+(exit status 0).
 )";
 
 constexpr const char* HELP_AFTER = R"(
@@ -87,9 +89,12 @@ Eigen::Isometry3d initialGuess(const po::variables_map& values, const Cloud& ref
          Eigen::Translation3d(moving.origin);
 }
 
-InputScan readScan(const std::string& path, Progress& progress) {
+/// \throws WorkError naming the file if it cannot be read or its VIEWPOINT is no pose
+InputScan readScan(const std::string& path, const ReadOptions& reading, Progress& progress) {
   progress.begin("read", "reading " + path);
-  return {path, readCloud(path)};
+  InputScan scan{path, readCloud(path, reading)};
+  if (!scan.cloud.pose_fault.empty()) throw WorkError(path + ": " + scan.cloud.pose_fault);
+  return scan;
 }
 
 /// \throws WorkError naming the file on which the method cannot work
@@ -136,8 +141,11 @@ void align(const po::variables_map& values) {
 
   const bool quiet = values["quiet"].as<bool>();
   Progress progress(quiet);
-  AlignedPair pair{
-      readScan(clouds[0], progress), readScan(clouds[1], progress), Eigen::Isometry3d::Identity(), {}};
+  const ReadOptions reading = readOptions(values);
+  AlignedPair pair{readScan(clouds[0], reading, progress),
+                   readScan(clouds[1], reading, progress),
+                   Eigen::Isometry3d::Identity(),
+                   {}};
   pair.guess = initialGuess(values, pair.reference.cloud, pair.moving.cloud);
   progress.begin("align", "aligning");
   alignClouds(pair, settings, segmenter);
@@ -156,7 +164,10 @@ void align(const po::variables_map& values) {
 
 void runAlign(const std::vector<std::string>& arguments) {
   po::options_description shown;
-  shown.add(commandOptions()).add(alignmentOptions("dense")).add(segmenterOptions());
+  shown.add(commandOptions())
+      .add(alignmentOptions("dense"))
+      .add(readingOptions(Labels::IGNORED))
+      .add(segmenterOptions());
   po::options_description all;
   all.add(shown).add_options()("cloud", po::value<std::vector<std::string>>());
   po::positional_options_description positional;

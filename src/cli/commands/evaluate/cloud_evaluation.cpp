@@ -47,13 +47,14 @@ std::optional<double> surfaceError(const std::vector<Eigen::Vector3d>& true_grou
 
 }  // namespace
 
-LabelledCloud readLabelledCloud(const std::string& path) {
-  LabelledCloud result{path, readCloud(path), {}};
+LabelledCloud readLabelledCloud(const std::string& path, const ReadOptions& options) {
+  LabelledCloud result{path, readCloud(path, options), {}};
+  if (!result.cloud.label_fault.empty()) throw WorkError(path + ": " + result.cloud.label_fault);
   if (result.cloud.labels.empty())
     throw WorkError(path + ": has no field 'label' (0 ground, 1 object) to compare with");
   const std::vector<int>& labels = result.cloud.labels;
   if (std::none_of(labels.begin(), labels.end(), [](int label) { return label == 0 || label == 1; }))
-    throw WorkError(path + ": none of its labels is 0 (ground) or 1 (object)");
+    throw WorkError(path + ": none of its labels means ground or object");
   requireFinitePoint(path, *result.cloud.points);
   result.true_ground = trueGroundOf(result.cloud);
   return result;

@@ -21,9 +21,10 @@ struct LabelledCloud {
 };
 
 /// Reads a cloud that has labels.
-/// \throws WorkError naming the file if it cannot be read, has no field `label` or none with 0 or 1 in it, or
-///         no finite point
-LabelledCloud readLabelledCloud(const std::string& path);
+/// \throws WorkError naming the file if it cannot be read, has no labels, such of unknown meaning, or none
+/// that
+///         is ground or object, or no finite point
+LabelledCloud readLabelledCloud(const std::string& path, const ReadOptions& options = {});
 
 /// What a method made of a cloud.
 struct Evaluation {

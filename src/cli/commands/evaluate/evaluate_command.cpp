@@ -11,6 +11,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "progress.h"
+#include "reading_options.h"
 #include "report/report.h"
 
 namespace pcl_fft_ground::cli {
@@ -21,11 +22,12 @@ using Names = std::vector<std::string>;
 
 constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground evaluate CLOUD... [options]
 
-Runs segmentation methods on labelled clouds (label 1 object, 0 ground; other labels are not scored) and prints how well
-they tell the two apart: tpr and tnr are the shares of object and of ground points that were found. surface_rmse [m] is
-that of the estimated ground surface: against the true heights where the cloud has them (a floating-point field
-'ground', as of simulate --ground-heights), else against the points labelled ground. All clouds and methods share one
-set of parameters. Several clouds are set side by side, too, as in the paper's Table I.
+Runs segmentation methods on labelled clouds (label 1 object, 0 ground, 2 not scored; the classes of LAS; others by
+--ground-classes and --ignore-classes) and prints how well they tell the two apart: tpr and tnr are the shares of
+object and of ground points that were found. surface_rmse [m] is that of the estimated ground surface: against the true
+heights where the cloud has them (a floating-point field 'ground', as of simulate --ground-heights), else against the
+points labelled ground. All clouds and methods share one set of parameters. Several clouds are set side by side, too, as
+in the paper's Table I.
 
 )";
 
@@ -71,7 +73,7 @@ Names chosenMethods(const po::variables_map& values) {
 
 Names chosenClouds(const po::variables_map& values) {
   if (values.count("cloud") == 0)
-    throw UsageError("evaluate: no cloud given: name PCD, PLY or text files with labels");
+    throw UsageError("evaluate: no cloud given: name files (PCD, PLY, LAS, text) with labels");
   return withoutRepeats(values["cloud"].as<Names>());
 }
 
@@ -93,10 +95,12 @@ std::string placeOf(const Names& clouds, std::size_t n) {
 
 /// Reads all clouds once before the long work, which a bad one among the last would undo, and before anything
 /// is written.
-void checkClouds(const Names& clouds, Progress& progress) {
+void checkClouds(const Names& clouds, const ReadOptions& reading, bool quiet, Progress& progress) {
   for (std::size_t n = 0; n < clouds.size(); ++n) {
     progress.begin("check", placeOf(clouds, n) + ": checking");
-    readLabelledCloud(clouds[n]);
+    const LabelledCloud cloud = readLabelledCloud(clouds[n], reading);
+    for (const std::string& remark : cloud.cloud.remarks)
+      if (!quiet) std::cerr << "pcl_fft_ground: warning: " << clouds[n] << ": " << remark << '\n';
   }
 }
 
@@ -116,12 +120,13 @@ std::vector<EvaluationRow> evaluateAll(const Names& clouds, std::vector<Segmente
   const bool quiet = values["quiet"].as<bool>();
   const Names pictures = pictureNames(clouds);
   Progress progress(quiet);
-  checkClouds(clouds, progress);
+  const ReadOptions reading = readOptions(values);
+  checkClouds(clouds, reading, quiet, progress);
   if (values.count("pictures") != 0) makeDirectory(values["pictures"].as<std::string>());
   std::vector<EvaluationRow> rows;
   for (std::size_t n = 0; n < clouds.size(); ++n) {
     progress.begin("read", placeOf(clouds, n));
-    const LabelledCloud cloud = readLabelledCloud(clouds[n]);
+    const LabelledCloud cloud = readLabelledCloud(clouds[n], reading);
     std::vector<Evaluation> evaluations;
     for (Segmenter& segmenter : segmenters) {
       progress.begin(segmenter.method, placeOf(clouds, n) + ": " + segmenter.method);
@@ -141,7 +146,7 @@ std::vector<EvaluationRow> evaluateAll(const Names& clouds, std::vector<Segmente
 
 void runEvaluate(const std::vector<std::string>& arguments) {
   po::options_description shown;
-  shown.add(segmenterOptions()).add(commandOptions());
+  shown.add(segmenterOptions()).add(readingOptions(Labels::USED)).add(commandOptions());
   po::options_description all;
   all.add(shown).add_options()("cloud", po::value<Names>());
   po::positional_options_description positional;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -10,8 +11,10 @@
 #include "commands/segment/segment_report.h"
 #include "errors.h"
 #include "io/output_file.h"
+#include "io/raster_files.h"
 #include "pcl_fft_ground/core/segments/object_clusters.h"
 #include "progress.h"
+#include "reading_options.h"
 #include "report/report.h"
 
 namespace pcl_fft_ground::cli {
@@ -22,24 +25,29 @@ using nlohmann::ordered_json;
 
 constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground segment CLOUD -o DIR [options]
 
-Splits a scan into ground and objects, and the objects into segments. CLOUD is a PCD or PLY file or text with
-x y z [label] in each line; coordinates are in metres, and the ground is what lies low. All that most scans
-need is the size of the largest object, --max-object-size; the values in round brackets hold otherwise.
+Splits a scan into ground and objects, and the objects into segments. CLOUD is a PCD, PLY or LAS file, points of
+KITTI or nuScenes (.bin) or text with x y z in each line, and maybe more columns; coordinates are in metres, and the
+ground is what lies low. All that most scans need is the size of the largest object, --max-object-size; the values in
+round brackets hold otherwise.
 )";
 
 constexpr const char* HELP_AFTER = R"(
 DIR is made if need be and receives
   labelled.pcd                           all points, in order, with label (0 ground, 1 object, 2 neither) and
                                          segment (1.. by falling size, 0 none)
+  labelled.las                           where CLOUD is LAS: the same file with other classes (see --classes)
   ground.pcd objects.pcd                 the ground points and the object points
   ground_surface.pcd ground_surface.asc  the estimated ground, as points and as an ESRI ASCII grid; with fft the
                                          points tell where it is supported by ground seen nearby, and how
                                          uncertain it is [m]
+  ground_surface.tif                     the same as GeoTIFF, in the coordinates of CLOUD: height, uncertainty and
+                                         supported, where the program is built with GDAL
   segments.csv                           place, extent and height of each segment
   report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores; the origin that
                                          is subtracted in all of these where coordinates are large
   elevation.png ground.png spectrum.png labels.png segments.png
-Where CLOUD has a label field, TPR, TNR and F1 of the objects are printed.
+Where CLOUD has labels (a field label: 0 ground, 1 object, 2 neither; the classes of LAS; others by --ground-classes
+and --ignore-classes), TPR, TNR and F1 of the objects are printed.
 
 Examples:
   pcl_fft_ground segment wreck.pcd -o result --max-object-size 1
@@ -72,6 +80,12 @@ po::options_description commandOptions() {
   add("height", po::bool_switch(),
       "add the height above the ground [m] to labelled.pcd as a field 'height', NaN where a point is not "
       "finite");
+  add("classes", po::value<std::string>()->value_name("G,O,B"),
+      "classes of ground, objects and objects below the ground in labelled.las (2,1,7)");
+  add("crs", po::value<std::string>()->value_name("EPSG:N"),
+      "coordinate reference system of ground_surface.tif (the one that a LAS file names)");
+  add("raster-resolution", po::value<double>()->value_name("M"),
+      "side of a cell of ground_surface.tif [m], above 0 (the cell size)");
   add("json", po::bool_switch(), "print the report as JSON");
   add("quiet", po::bool_switch(), "print nothing but errors");
   add("help,h", po::bool_switch(), "show this text");
@@ -156,10 +170,46 @@ std::string required(const po::variables_map& values, const std::string& option,
   return values[option].as<std::string>();
 }
 
-/// The warnings of the filter, and one where the clustering found nothing.
-std::vector<std::string> warningsOf(const Segmenter& segmenter, const Segmentation& segmentation,
-                                    const ClusterParameters& clusters) {
-  std::vector<std::string> warnings = segmenter.filter->getWarnings();
+LasClasses lasClasses(const po::variables_map& values) {
+  if (values.count("classes") == 0) return {};
+  const std::string text = values["classes"].as<std::string>();
+  const std::vector<int> numbers = numberList("classes", text);
+  const bool in_range = std::all_of(numbers.begin(), numbers.end(), [](int c) { return c >= 0 && c <= 255; });
+  if (numbers.size() != 3 || !in_range)
+    throw UsageError("--classes " + text + ": allowed are three whole numbers from 0 to 255, G,O,B");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+RasterOptions rasterOptions(const po::variables_map& values) {
+  RasterOptions options;
+  if (values.count("raster-resolution") != 0) options.resolution = values["raster-resolution"].as<double>();
+  const bool is_given = values.count("raster-resolution") != 0 || values.count("crs") != 0;
+  if (is_given && !canWriteGeoTiff())
+    throw UsageError(
+        "--crs and --raster-resolution: this program is built without GDAL and writes no GeoTIFF");
+  if (values.count("raster-resolution") != 0 &&
+      !(options.resolution > 0 && std::isfinite(options.resolution))) {
+    std::ostringstream message;
+    message << "--raster-resolution " << options.resolution
+            << ": allowed is a finite number of metres above 0";
+    throw UsageError(message.str());
+  }
+  if (values.count("crs") == 0) return options;
+  options.crs = values["crs"].as<std::string>();
+  if (!isKnownCrs(options.crs))
+    throw UsageError("--crs " + options.crs + ": allowed is what GDAL knows, such as EPSG:25832 or WKT");
+  return options;
+}
+
+/// What there is to say about the file, the warnings of the filter, and one where the clustering found
+/// nothing.
+std::vector<std::string> warningsOf(const Cloud& cloud, const Segmenter& segmenter,
+                                    const Segmentation& segmentation, const ClusterParameters& clusters) {
+  std::vector<std::string> warnings = cloud.remarks;
+  if (!cloud.pose_fault.empty()) warnings.push_back(cloud.pose_fault + ": taken for none");
+  if (!cloud.label_fault.empty()) warnings.push_back(cloud.label_fault);
+  const std::vector<std::string> of_filter = segmenter.filter->getWarnings();
+  warnings.insert(warnings.end(), of_filter.begin(), of_filter.end());
   if (segmentation.clusters.empty() && segmentation.objects.indices.size() >= clusters.min_cluster_size)
     warnings.push_back("no segment has " + std::to_string(clusters.min_cluster_size) +
                        " points: a larger --leaf-size or a smaller --min-cluster-size may help");
@@ -167,15 +217,20 @@ std::vector<std::string> warningsOf(const Segmenter& segmenter, const Segmentati
 }
 
 void segment(const po::variables_map& values) {
-  const std::string input = required(values, "cloud", "cloud given: name a PCD, PLY or text file");
+  const std::string input = required(values, "cloud", std::string("cloud given: name a ") + CLOUD_FILES);
   const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
   Segmenter segmenter = makeSegmenter(values["method"].as<std::string>(), values);
   ClusterParameters clusters = clusterParameters(values);
+  const ReadOptions reading = readOptions(values);
+  const LasClasses classes = lasClasses(values);
+  const RasterOptions raster = rasterOptions(values);
   const bool quiet = values["quiet"].as<bool>();
 
   Progress progress(quiet);
   progress.begin("read", "Reading " + input);
-  const Cloud cloud = readCloud(input);
+  const Cloud cloud = readCloud(input, reading);
+  if (values.count("classes") != 0 && cloud.format != CloudFormat::LAS)
+    throw UsageError("--classes: only a LAS file gets classes, and '" + input + "' is none");
   progress.begin("segment", "Separating ground from objects");
   Segmentation segmentation = segmentCloud(input, cloud, segmenter);
   if (values["height"].as<bool>()) segmentation.heights = segmenter.filter->getHeightAboveGround();
@@ -185,14 +240,16 @@ void segment(const po::variables_map& values) {
   progress.begin("write", "Writing to " + directory);
   makeDirectory(directory);
   writeClouds(directory, cloud, segmentation);
-  writeGroundSurface(directory, cloud, segmentation);
+  if (cloud.format == CloudFormat::LAS) writeLas(directory, input, segmenter, segmentation, classes);
+  writeGroundSurface(directory, cloud, segmentation, raster);
   writeSegments(directory, cloud, segmentation);
   progress.begin("pictures", "Drawing pictures to " + directory);
   writePictures(directory, segmenter, segmentation, cloud);
   progress.end();
 
-  const ordered_json parameters = describeClusterParameters(segmenter.parametersInForce(), clusters, values);
-  const std::vector<std::string> warnings = warningsOf(segmenter, segmentation, clusters);
+  ordered_json parameters = describeClusterParameters(segmenter.parametersInForce(), clusters, values);
+  describeReading(reading, parameters);
+  const std::vector<std::string> warnings = warningsOf(cloud, segmenter, segmentation, clusters);
   const ordered_json report =
       makeReport(input, cloud, segmenter, segmentation, parameters, warnings, progress);
   const std::string text = asText(report);
@@ -209,7 +266,7 @@ void segment(const po::variables_map& values) {
 
 void runSegment(const std::vector<std::string>& arguments) {
   po::options_description shown;
-  shown.add(segmenterOptions()).add(commandOptions());
+  shown.add(segmenterOptions()).add(readingOptions(Labels::USED)).add(commandOptions());
   po::options_description all;
   all.add(shown).add_options()("cloud", po::value<std::string>());
   po::positional_options_description positional;

@@ -8,8 +8,10 @@
 
 #include <pcl/conversions.h>
 
-#include "io/ascii_grid.h"
+#include "errors.h"
 #include "io/output_file.h"
+#include "io/raster_files.h"
+#include "pictures/raster.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -70,6 +72,41 @@ double levelCellSize(const core::Bounds& bounds, const core::GridGeometry& cells
   return needed <= most ? cells.cell_size : cells.cell_size * std::sqrt(needed / most);
 }
 
+/// The surface over the input's x and y axes. A cell is centred on the outermost points: they lie at cell
+/// centres of the surface.
+GroundRaster resampled(const core::GroundSurface& surface, const core::Bounds& bounds, double cell_size) {
+  const core::GridGeometry level = core::gridAround(bounds, cell_size);
+  GroundRaster raster;
+  raster.lower_left_corner = level.origin - Eigen::Vector2d::Constant(0.5 * level.cell_size);
+  raster.cell_size = level.cell_size;
+  raster.height.resize(level.rows, level.cols);
+  raster.uncertainty.setConstant(level.rows, level.cols, NO_DATA);
+  raster.supported.setConstant(level.rows, level.cols, 0);
+  core::GroundSurface uncertainty{surface.frame_from_input, surface.geometry, surface.uncertainty};
+  for (Eigen::Index j = 0; j < level.cols; ++j)
+    for (Eigen::Index i = 0; i < level.rows; ++i) {
+      const Eigen::Vector2d place =
+          level.origin + level.cell_size * Eigen::Vector2d(static_cast<double>(i), static_cast<double>(j));
+      const double height = raster.height(i, j) = verticalHeight(surface, place.x(), place.y());
+      if (!std::isfinite(height)) continue;
+      const Eigen::Vector3d p = surface.frame_from_input * Eigen::Vector3d(place.x(), place.y(), height);
+      const Eigen::Index cell = cellBelow(surface.geometry, p);
+      const bool tells = surface.supported.size() > 0;
+      raster.supported(i, j) = !tells || (cell >= 0 && surface.supported.data()[cell]) ? 1 : 0;
+      if (uncertainty.height.size() > 0) raster.uncertainty(i, j) = uncertainty.heightAt(p.x(), p.y());
+    }
+  return raster;
+}
+
+/// A raster in the coordinates of the file, and without what is not supported.
+GroundRaster placed(GroundRaster raster, const Eigen::Vector3d& origin) {
+  raster.lower_left_corner += origin.head<2>();
+  const auto known = raster.supported > 0;
+  raster.height = known.select(raster.height + origin.z(), NO_DATA);
+  raster.uncertainty = known.select(raster.uncertainty, NO_DATA);
+  return raster;
+}
+
 }  // namespace
 
 void writeClouds(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
@@ -90,7 +127,23 @@ void writeClouds(const std::string& directory, const Cloud& cloud, const Segment
   write("objects.pcd", selectPoints(labelled, segmentation.objects.indices));
 }
 
-void writeGroundSurface(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+void writeLas(const std::string& directory, const std::string& input, const Segmenter& segmenter,
+              const Segmentation& segmentation, const LasClasses& classes) {
+  // Only the robust estimator calls points objects because they lie below the ground.
+  const bool tells_below = segmenter.fft != nullptr && segmenter.fft->getEstimator() == Estimator::ROBUST;
+  const std::vector<double> heights =
+      tells_below ? segmenter.filter->getHeightAboveGround() : std::vector<double>();
+  std::vector<int> numbers(segmentation.labels.size(), -1);
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    if (segmentation.labels[n] == core::Label::GROUND) numbers[n] = classes.ground;
+    if (segmentation.labels[n] == core::Label::OBJECT)
+      numbers[n] = tells_below && heights[n] < 0 ? classes.below : classes.object;
+  }
+  writeReclassified(directory + "/labelled.las", input, numbers);
+}
+
+void writeGroundSurface(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation,
+                        const RasterOptions& raster) {
   const core::GroundSurface& surface = segmentation.surface;
   const pcl::PointCloud<Point> points = surfacePoints(surface);
   pcl::PCLPointCloud2 fields;
@@ -107,15 +160,22 @@ void writeGroundSurface(const std::string& directory, const Cloud& cloud, const 
   for (std::size_t n = 0; n < points.size(); ++n)
     corners.col(static_cast<Eigen::Index>(n)) = points[n].getVector3fMap();
   const core::Bounds bounds = core::boundsOf(corners);
-  const core::GridGeometry level = core::gridAround(bounds, levelCellSize(bounds, surface.geometry));
-  // A cell is centred on the outermost points: they lie at cell centres of the surface.
-  const Eigen::Vector2d lower_left = level.origin - Eigen::Vector2d::Constant(0.5 * level.cell_size);
-  Eigen::ArrayXXd heights(level.rows, level.cols);
-  for (Eigen::Index j = 0; j < level.cols; ++j)
-    for (Eigen::Index i = 0; i < level.rows; ++i)
-      heights(i, j) = verticalHeight(surface, level.origin.x() + static_cast<double>(i) * level.cell_size,
-                                     level.origin.y() + static_cast<double>(j) * level.cell_size);
-  writeAsciiGrid(directory + "/ground_surface.asc", heights, lower_left, level.cell_size);
+  const double cell_size = levelCellSize(bounds, surface.geometry);
+  const GroundRaster level = resampled(surface, bounds, cell_size);
+  writeAsciiGrid(directory + "/ground_surface.asc", level.height, level.lower_left_corner, level.cell_size);
+  if (!canWriteGeoTiff()) return;
+  const double cells =
+      ((bounds.high - bounds.low).head<2>() / std::max(raster.resolution, cell_size * 1e-9) + 1).prod();
+  if (raster.resolution > 0 && cells > core::MAX_CELLS) {
+    std::ostringstream message;
+    message << "--raster-resolution " << raster.resolution << ": the raster would have more than "
+            << core::MAX_CELLS << " cells";
+    throw WorkError(message.str());
+  }
+  const bool same = raster.resolution == 0 || raster.resolution == cell_size;
+  const std::string& crs = raster.crs.empty() && isKnownCrs(cloud.crs) ? cloud.crs : raster.crs;
+  writeGeoTiff(directory + "/ground_surface.tif",
+               placed(same ? level : resampled(surface, bounds, raster.resolution), cloud.origin), crs);
 }
 
 void writeSegments(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <sstream>
 #include <utility>
 
 #include "pcl_fft_ground/version.h"
@@ -150,15 +151,15 @@ void printSummary(std::ostream& out, const ordered_json& report) {
         << ", m_c = " << spectrum["object_size"].get<double>() << " m, from "
         << spectrum["cutoff_from"].get<std::string>() << '\n';
   if (report["scores"].is_null()) return;
-  out << "scores    ";
-  for (const char* name : {"tpr", "tnr", "f1"}) {
-    out << "  " << name << ' ';
-    if (report["scores"][name].is_number() && std::isfinite(report["scores"][name].get<double>()))
-      out << report["scores"][name].get<double>();
-    else
-      out << '-';
-  }
-  out << "  against the labels of the input\n";
+  const auto is_known = [&](const char* name) {
+    const ordered_json& score = report["scores"][name];
+    return score.is_number() && std::isfinite(score.get<double>());
+  };
+  std::ostringstream scores;
+  for (const char* name : {"tpr", "tnr", "f1"})
+    if (is_known(name) && (is_known("tpr") || std::string(name) == "tnr"))  // F1 of no objects says nothing
+      scores << "  " << name << ' ' << std::setprecision(4) << report["scores"][name].get<double>();
+  if (!scores.str().empty()) out << "scores    " << scores.str() << "  against the labels of the input\n";
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "io/cloud_fields.h"
-#include "io/pcd_cloud.h"
+#include "io/cloud_file.h"
 
 namespace pcl_fft_ground::cli {
 namespace {

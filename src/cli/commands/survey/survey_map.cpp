@@ -11,7 +11,6 @@
 #include "io/cloud_fields.h"
 #include "io/cloud_file.h"
 #include "io/output_file.h"
-#include "io/pcd_cloud.h"
 #include "methods/segmentation.h"
 #include "pcl_fft_ground/core/align/crispness.h"
 #include "pictures/pictures.h"

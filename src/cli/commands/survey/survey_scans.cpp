@@ -20,8 +20,9 @@ std::string truthPath(const std::string& folder) {
   return folder + "/truth.csv";
 }
 
+/// \return why its VIEWPOINT is no pose; empty if it is one
 /// \throws std::exception if the file is no sub-map
-void addSubmap(const std::string& path, const core::NavigationSigmas& sigmas, SurveyFolder& survey) {
+std::string addSubmap(const std::string& path, const core::NavigationSigmas& sigmas, SurveyFolder& survey) {
   const Cloud cloud = readCloud(path);
   const core::Points points = usablePoints(*cloud.points).points;
   if (points.cols() == 0) throw WorkError(path + ": none of its points is finite; at least one has to be");
@@ -29,17 +30,21 @@ void addSubmap(const std::string& path, const core::NavigationSigmas& sigmas, Su
   survey.scans.push_back(std::move(scan));
   survey.submaps.push_back(
       {fs::path(path).filename().string(), path, cloud.origin, core::voxelSizeFor(points)});
+  return cloud.pose_fault;
 }
 
 /// Adds a sub-map or says why the file is none.
+/// \throws WorkError naming the file if its VIEWPOINT is no pose: navigation is at fault then, not a scan
 void addOrLeaveOut(const std::string& path, const core::NavigationSigmas& sigmas, SurveyFolder& survey) {
+  std::string pose_fault;
   try {
-    addSubmap(path, sigmas, survey);
+    pose_fault = addSubmap(path, sigmas, survey);
   } catch (const WorkError& error) {
     survey.left_out.push_back({fs::path(path).filename().string(), error.what()});
   } catch (const std::logic_error& error) {  // of the core: points that are spread too widely
     survey.left_out.push_back({fs::path(path).filename().string(), path + ": " + error.what()});
   }
+  if (!pose_fault.empty()) throw WorkError(path + ": " + pose_fault);
 }
 
 /// The true pose of every sub-map; empty if there is no table.
@@ -57,17 +62,10 @@ std::vector<Eigen::Isometry3d> truthOf(const std::vector<Submap>& submaps, const
   return truth;
 }
 
-std::string lowerCase(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool isSubmap(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
-  const std::string ending = lowerCase(entry.path().extension().string());
   std::error_code ignored;  // a link to nowhere is no sub-map
-  if ((ending != ".pcd" && ending != ".ply") || name.front() == '.' || !entry.is_regular_file(ignored))
-    return false;
+  if (!hasCloudName(name) || name.front() == '.' || !entry.is_regular_file(ignored)) return false;
   if (name.find_first_of(",\"\n\r") != std::string::npos)
     throw WorkError(entry.path().string() + ": a sub-map's name has no commas, quotes or line breaks");
   return true;
@@ -95,7 +93,7 @@ std::vector<std::string> listSubmaps(const std::string& folder) {
   if (error) throw WorkError(folder + ": " + error.message());
   if (paths.size() < 2)
     throw WorkError(folder + ": has " + std::to_string(paths.size()) +
-                    " sub-maps (*.pcd, *.ply); a survey needs at least 2");
+                    " sub-maps (*.pcd, *.ply, *.las); a survey needs at least 2");
   std::sort(paths.begin(), paths.end());
   return paths;
 }

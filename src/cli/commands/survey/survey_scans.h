@@ -47,7 +47,7 @@ struct SurveyFolder {
   std::vector<LeftOut> left_out;         ///< what cannot be read or holds no finite point
 };
 
-/// The clouds (*.pcd, *.ply, in any case) in a folder, in the order of their names.
+/// The clouds (*.pcd, *.ply, *.las, in any case) in a folder, in the order of their names.
 /// \throws WorkError naming the folder, if it cannot be read or holds fewer than two, or the cloud whose name
 ///         would break a table
 std::vector<std::string> listSubmaps(const std::string& folder);
