@@ -69,7 +69,7 @@ TEST_F(EvaluationPictures, EachKindOfErrorHasAColourOfItsOwn) {
 }
 
 TEST_F(EvaluationPictures, WhatIsNotScoredHasOneColourWhateverTheMethodSays) {
-  const LabelledCloud cloud = levelScan(2, 3);
+  const LabelledCloud cloud = levelScan(2, 2);
   EXPECT_EQ(coloursOf(cloud, {evaluationOf(cloud, core::Label::OBJECT, core::Label::GROUND)}).size(), 1u);
 }
 
