@@ -48,7 +48,8 @@ class ObjectClusterExtraction : public pcl::PCLBase<PointT> {
     return minimum_object_size_.value_or(core::MINIMUM_OBJECT_LEAVES * leaf_size_);
   }
 
-  /// Direction of positive elevation, any finite length above 0; kept normalised. Default: +z. Throws as
+  /// Direction of positive elevation, any finite length above 0; kept normalised. Default: +z. One that leans
+  /// by less than 10 degrees from +z counts as +z. Throws as
   /// above.
   void setUpDirection(const Eigen::Vector3d& up);
   Eigen::Vector3d getUpDirection() const { return up_; }

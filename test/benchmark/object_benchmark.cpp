@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "pcl_fft_ground/core/segments/object_properties.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
 #include "pcl_fft_ground/object_cluster_extraction.h"
 #include "pcl_fft_ground/simulation/simulation.h"
@@ -33,17 +34,18 @@ using Clusters = std::vector<pcl::PointIndices>;
 
 constexpr double LARGEST = 1.0;    // object [m]
 constexpr int LEAST_POINTS = 300;  // of an object or a segment that counts
-constexpr double SAME_OBJECT =
-    0.05;  // share of a segment that makes a cut count, and of another object in it
+constexpr double A_PART = 0.05;    // share of a contact cluster: a piece of that size is a cut
+constexpr double ANOTHER = 0.02;   // share of a contact cluster that makes it one of two objects
 
 /// A scan, and what `segment` makes of it.
 struct Trial {
   core::SimulatedScan scan;
   Cloud::Ptr cloud{new Cloud};
   pcl::IndicesPtr objects{new pcl::Indices};
+  std::vector<double> heights;  // above the ground, per point [m]
+  std::vector<core::SimulatedObject> known;
   Eigen::Vector3d up;
   double leaf_size = 0;
-  double object_share = 0;  // of points that count
 };
 
 Trial makeTrial(core::SceneKind kind, double share, std::uint32_t seed, std::size_t points) {
@@ -61,6 +63,8 @@ Trial makeTrial(core::SceneKind kind, double share, std::uint32_t seed, std::siz
   filter.filter(*trial.objects);
   trial.up = filter.getFrame().linear().row(2).transpose();
   trial.leaf_size = filter.getCellSize();
+  trial.heights = filter.getHeightAboveGround();
+  trial.known = core::simulatedObjects(parameters);
   return trial;
 }
 
@@ -161,13 +165,58 @@ void countSingles(const std::vector<int>& truth, const Clusters& contact, const 
       if (truth[static_cast<std::size_t>(n)] > 0) ++objects[truth[static_cast<std::size_t>(n)]];
       ++parts[cluster_of[static_cast<std::size_t>(n)]];
     }
-    const auto large = [&](const std::map<int, int>& sizes) {
+    const auto large = [&](const std::map<int, int>& sizes, double share) {
       return std::count_if(sizes.begin(), sizes.end(), [&](const auto& size) {
-        return size.second >= SAME_OBJECT * static_cast<double>(cluster.indices.size());
+        return size.second >= share * static_cast<double>(cluster.indices.size());
       });
     };
-    if (large(objects) == 1) ++(large(parts) > 1 ? singles.cut : singles.whole);
+    if (large(objects, ANOTHER) == 1) ++(large(parts, A_PART) > 1 ? singles.cut : singles.whole);
   }
+}
+
+/// Relative errors of what is measured of segments that match objects seen to at least half.
+struct Errors {
+  std::vector<double> volume, pipe_radius;
+};
+
+void measureMatches(const Trial& trial, const std::vector<int>& truth, const Clusters& clusters,
+                    bool are_pipes, Errors& errors) {
+  std::map<int, double> object_points;
+  for (const int object : truth)
+    if (object > 0) ++object_points[object];
+  for (const pcl::PointIndices& cluster : clusters) {
+    std::map<int, int> objects;
+    for (const pcl::index_t n : cluster.indices) ++objects[truth[static_cast<std::size_t>(n)]];
+    for (const auto& [object, points] : objects) {
+      const auto size = static_cast<double>(cluster.indices.size());
+      if (object <= 0 || points < LEAST_POINTS || points / (object_points[object] + size - points) <= 0.5)
+        continue;
+      const core::SimulatedObject& known = trial.known[static_cast<std::size_t>(object - 1)];
+      if (known.share_seen < 0.5) continue;
+      core::Points of_cluster(3, static_cast<Eigen::Index>(cluster.indices.size()));
+      std::vector<double> heights;
+      for (std::size_t k = 0; k < cluster.indices.size(); ++k) {
+        of_cluster.col(static_cast<Eigen::Index>(k)) = trial.scan.points.col(cluster.indices[k]);
+        heights.push_back(trial.heights[static_cast<std::size_t>(cluster.indices[k])]);
+      }
+      const core::ObjectProperties measured =
+          core::measureObject(of_cluster, heights, {trial.leaf_size, trial.up, nullptr});
+      errors.volume.push_back(measured.volume / known.volume - 1);
+      if (are_pipes && measured.body && measured.body->shape == core::RoundBody::Shape::CYLINDER)
+        errors.pipe_radius.push_back(measured.body->radius / known.radius - 1);
+    }
+  }
+}
+
+void printErrors(const char* what, std::vector<double> errors) {
+  if (errors.empty()) return;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  const double bias = *middle;
+  for (double& error : errors) error = std::abs(error);
+  std::nth_element(errors.begin(), middle, errors.end());
+  std::printf("%s: median error %.1f %%, median of the sign %+.1f %% (%zu objects)\n", what, 100 * *middle,
+              100 * bias, errors.size());
 }
 
 void printTable(std::uint32_t first, std::uint32_t last) {
@@ -186,6 +235,7 @@ void printTable(std::uint32_t first, std::uint32_t last) {
       "| scene | share | contact PQ | objects PQ | at least | objects seen | segments | F_os | F_us |\n"
       "|---|---|---|---|---|---|---|---|---|\n");
   Singles singles;
+  Errors errors[3];
   for (const Bar& bar : BARS) {
     Agreement mean, contact_mean;
     for (std::uint32_t seed = first; seed <= last; ++seed) {
@@ -193,6 +243,8 @@ void printTable(std::uint32_t first, std::uint32_t last) {
       const std::vector<int> truth = truthOf(trial.scan);
       const Clusters contact = extractContact(trial), clusters = extractObjects(trial);
       countSingles(truth, contact, clusters, singles);
+      measureMatches(trial, truth, clusters, bar.kind == core::SceneKind::PIPES,
+                     errors[static_cast<std::size_t>(bar.kind)]);
       const Agreement agreement = compare(truth, clusters);
       contact_mean.quality += compare(truth, contact).quality;
       mean.quality += agreement.quality;
@@ -210,6 +262,9 @@ void printTable(std::uint32_t first, std::uint32_t last) {
   }
   std::printf("\ncontact clusters of one object: %d, of which cut: %d\n", singles.whole + singles.cut,
               singles.cut);
+  const char* const names[3] = {"volumes of amphorae", "volumes of pipes", "volumes of boulders"};
+  for (std::size_t kind = 0; kind < 3; ++kind) printErrors(names[kind], errors[kind].volume);
+  printErrors("radii of pipes", errors[1].pipe_radius);
 }
 
 template <typename Extract>

@@ -49,7 +49,8 @@ TEST_F(SegmentCommand, SegmentsAreDescribedByTheirPoints) {
   std::ifstream csv(outputOf("segments.csv"));
   std::string line;
   ASSERT_TRUE(std::getline(csv, line));
-  EXPECT_EQ(line, "segment,points,cx,cy,cz,ex,ey,ez,height");
+  EXPECT_EQ(line.rfind("segment,points,cx,cy,cz,ex,ey,ez,height,length,width,", 0), 0U) << line;
+  EXPECT_EQ(std::count(line.begin(), line.end(), ','), 28);
   std::size_t row = 0;
   for (double last = 1e9; std::getline(csv, line);) {
     std::replace(line.begin(), line.end(), ',', ' ');

@@ -14,9 +14,8 @@ namespace {
 constexpr double GOOD_RESIDUAL = 1.0 / 12;
 
 constexpr double OUTLIER = 3;  // standard deviations: beyond it a point pulls no more
-constexpr int MOST_ITERATIONS = 40;
-constexpr Eigen::Index MOST_POINTS =
-    400;  // for the fit: enough for seven numbers to a hundredth of the noise
+constexpr int MOST_ITERATIONS = 25;
+constexpr Eigen::Index MOST_POINTS = 250;  // of a fit of seven numbers
 
 /// A body by numbers that a solver may change freely: steps of the centre and of the axis in the start's
 /// frame, logs of half the length and of the radius. A cylinder has no step along its axis and no length.
@@ -146,7 +145,7 @@ bool isCredible(const RoundBody& body, const ObjectProperties& box) {
 }  // namespace
 
 std::optional<RoundBody> fitRoundBody(const Eigen::Matrix3Xd& points, const ObjectProperties& box) {
-  constexpr Eigen::Index FEWEST = 24;
+  constexpr Eigen::Index FEWEST = 100;  // points: a body of fewer is hardly a shape
   if (points.cols() < FEWEST || !(box.lengths(1) > 0)) return std::nullopt;
   const Eigen::Matrix3Xd sample = thinned(points);
   RoundBody cylinder = fitted(RoundBody::Shape::CYLINDER, sample, box);

@@ -4,13 +4,19 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
 
 #include <pcl/conversions.h>
 
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/raster_files.h"
+#include "pcl_fft_ground/core/align/scan_coverage.h"
+#include "pcl_fft_ground/core/scan/prepare.h"
+#include "pcl_fft_ground/core/segments/object_properties.h"
+#include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pictures/raster.h"
 
 namespace pcl_fft_ground::cli {
@@ -178,9 +184,65 @@ void writeGroundSurface(const std::string& directory, const Cloud& cloud, const 
                placed(same ? level : resampled(surface, bounds, raster.resolution), cloud.origin), crs);
 }
 
+namespace {
+
+/// Where the scan has looked, seen from above; nothing where a grid of it would be too large.
+std::optional<core::ScanCoverage> coverageOf(const Cloud& cloud, double cell_size) {
+  constexpr double CELLS = 2.5;  // as alignment has it
+  const impl::IndexedPoints<Point> all(*cloud.points, nullptr);
+  try {
+    return core::coverageOf(core::usablePoints(all.finitePoints()).points, CELLS * cell_size);
+  } catch (const std::length_error&) {
+    return std::nullopt;
+  }
+}
+
+core::ObjectProperties measureSegment(const Cloud& cloud, const Segmentation& segmentation,
+                                      const pcl::Indices& indices, const core::ObjectView& view) {
+  core::Points points(3, static_cast<Eigen::Index>(indices.size()));
+  std::vector<double> heights;
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    const Eigen::Vector3f point = (*cloud.points)[static_cast<std::size_t>(indices[k])].getVector3fMap();
+    points.col(static_cast<Eigen::Index>(k)) = point;
+    heights.push_back(segmentation.surface.heightAbove(point.cast<double>()));
+  }
+  return core::measureObject(points, heights, view);
+}
+
+/// The columns of segments.csv after the first nine.
+constexpr const char* PROPERTY_COLUMNS =
+    ",length,width,thickness,axis_x,axis_y,axis_z,footing,volume,steepest,at_border,body,body_x,body_y,body_"
+    "z,"
+    "body_axis_x,body_axis_y,body_axis_z,body_length,body_radius,body_residual";
+
+void writeProperties(std::ostream& csv, const core::ObjectProperties& object) {
+  const auto write = [&](const auto& vector) {
+    csv << ',' << vector.x() << ',' << vector.y() << ',' << vector.z();
+  };
+  write(object.lengths);
+  write(object.axes.col(0));
+  csv << ',' << object.footing << ',' << std::setprecision(6) << object.volume << std::setprecision(4) << ','
+      << object.steepest << ',' << (object.at_border ? 1 : 0);
+  if (!object.body) {
+    csv << ",,,,,,,,,,";
+    return;
+  }
+  csv << ',' << (object.body->shape == core::RoundBody::Shape::CYLINDER ? "cylinder" : "ellipsoid");
+  write(object.body->centre);
+  write(object.body->axis);
+  csv << ',' << object.body->length << ',' << object.body->radius << ',' << object.body->residual;
+}
+
+}  // namespace
+
 void writeSegments(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
   std::ostringstream csv;
-  csv << "segment,points,cx,cy,cz,ex,ey,ez,height\n" << std::fixed << std::setprecision(4);
+  csv << "segment,points,cx,cy,cz,ex,ey,ez,height" << PROPERTY_COLUMNS << '\n'
+      << std::fixed << std::setprecision(4);
+  const double cell_size = segmentation.elevation.geometry.cell_size;
+  const std::optional<core::ScanCoverage> coverage = coverageOf(cloud, cell_size);
+  const core::ObjectView view{cell_size, segmentation.surface.frame_from_input.linear().row(2).transpose(),
+                              coverage ? &*coverage : nullptr};
   for (std::size_t k = 0; k < segmentation.clusters.size(); ++k) {
     Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
     Eigen::Array3d sum = Eigen::Array3d::Zero();
@@ -195,7 +257,9 @@ void writeSegments(const std::string& directory, const Cloud& cloud, const Segme
     }
     const Eigen::Array3d centroid = sum / static_cast<double>(indices.size()), extent = high - low;
     csv << k + 1 << ',' << indices.size() << ',' << centroid.x() << ',' << centroid.y() << ',' << centroid.z()
-        << ',' << extent.x() << ',' << extent.y() << ',' << extent.z() << ',' << height << '\n';
+        << ',' << extent.x() << ',' << extent.y() << ',' << extent.z() << ',' << height;
+    writeProperties(csv, measureSegment(cloud, segmentation, indices, view));
+    csv << '\n';
   }
   writeText(directory + "/segments.csv", csv.str());
 }

@@ -4,11 +4,13 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "command_line.h"
 #include "commands/commands.h"
 #include "commands/simulate/simulated_scan.h"
 #include "errors.h"
+#include "io/output_file.h"
 #include "pcl_fft_ground/simulation/simulation.h"
 #include "report/report.h"
 
@@ -46,6 +48,7 @@ struct Request {
   bool quiet = false;
   bool json = false;
   bool ground_heights = false;
+  std::string objects;
 };
 
 po::options_description describeOptions(Request& request) {
@@ -69,6 +72,10 @@ po::options_description describeOptions(Request& request) {
   add("ground-heights", po::bool_switch(&request.ground_heights),
       "add a field 'ground': height of the true ground at each point's x and y [m], by which evaluate judges "
       "surfaces");
+  add("objects", po::value(&request.objects)->value_name("FILE"),
+      "CSV file to write, too: a row for each object with its number, kind, centre, axis, length, largest "
+      "radius, volume "
+      "above the ground and the share of it that is seen from above");
   add("quiet", po::bool_switch(&request.quiet), "print nothing");
   add("json", po::bool_switch(&request.json), "print the summary as JSON");
   add("help,h", po::bool_switch(&request.help), "show this text");
@@ -104,6 +111,23 @@ core::SimulatedScan simulate(const core::SimulationParameters& parameters) {
   core::SimulatedScan scan;
   withOptionNames([&] { scan = core::simulateScan(parameters); });
   return scan;
+}
+
+/// The truth of the objects as a table; metres, in the scan's own frame.
+std::string objectTable(const core::SimulationParameters& parameters) {
+  const char* const kind = parameters.scene == core::SceneKind::WRECK   ? "amphora"
+                           : parameters.scene == core::SceneKind::PIPES ? "pipe"
+                                                                        : "boulder";
+  std::ostringstream csv;
+  csv << "segment,kind,cx,cy,cz,axis_x,axis_y,axis_z,length,radius,volume,share_seen\n" << std::fixed;
+  for (const core::SimulatedObject& object : core::simulatedObjects(parameters)) {
+    csv << object.segment << ',' << kind << std::setprecision(4);
+    for (const Eigen::Vector3d& vector : {object.centre, object.axis})
+      for (const double coordinate : vector) csv << ',' << coordinate;
+    csv << ',' << object.length << ',' << object.radius << ',' << std::setprecision(6) << object.volume << ','
+        << std::setprecision(3) << object.share_seen << '\n';
+  }
+  return csv.str();
 }
 
 struct Summary {
@@ -155,6 +179,7 @@ void runSimulate(const std::vector<std::string>& arguments) {
   const core::SimulatedScan scan = simulate(request.parameters);
   writeSimulatedScan(request.output, scan, scan.world_from_scan,
                      request.ground_heights ? GroundHeights::WRITE : GroundHeights::OMIT);
+  if (!request.objects.empty()) writeText(request.objects, objectTable(request.parameters));
   const Summary summary = summarise(scan);
   if (request.json) {
     printJson(request, summary);
