@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <cstring>
 #include <tuple>
-#include <utility>
 
 #include "segments/voxel_contact.h"
 
@@ -33,14 +32,25 @@ int quarterOf(const Eigen::Vector3f& point, const Voxel& voxel, double leaf_size
 
 /// Numbers of the voxels, row by row.
 std::vector<VoxelIndex> voxelsByPlace(const std::vector<Voxel>& voxels) {
-  std::vector<VoxelIndex> order(voxels.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](VoxelIndex a, VoxelIndex b) {
-    const Voxel& v = voxels[static_cast<std::size_t>(a)];
-    const Voxel& w = voxels[static_cast<std::size_t>(b)];
-    return std::tie(v.j, v.i, v.k) < std::tie(w.j, w.i, w.k);
-  });
+  using Placed = std::tuple<std::int64_t, std::int64_t, std::int64_t, VoxelIndex>;
+  std::vector<Placed> placed;
+  placed.reserve(voxels.size());
+  for (const Voxel& v : voxels) placed.emplace_back(v.j, v.i, v.k, static_cast<VoxelIndex>(placed.size()));
+  std::sort(placed.begin(), placed.end());
+  std::vector<VoxelIndex> order;
+  order.reserve(placed.size());
+  for (const Placed& voxel : placed) order.push_back(std::get<3>(voxel));
   return order;
+}
+
+/// A whole number that is ordered as the value is, and by the column where values are equal.
+std::uint64_t sortKey(float value, std::size_t column) {
+  constexpr std::uint32_t SIGN = 0x80000000U;
+  const float plain = value + 0.0F;  // no -0
+  std::uint32_t bits;
+  std::memcpy(&bits, &plain, sizeof bits);
+  bits = (bits & SIGN) != 0 ? ~bits : bits | SIGN;
+  return static_cast<std::uint64_t>(bits) << 32 | column;
 }
 
 }  // namespace
@@ -139,11 +149,16 @@ void Relief::addColumns(const Blocks& blocks) {
 
 void Relief::connect() {
   std::vector<std::array<VoxelIndex, 9>> around(blocks_.voxels().size());
+  for (auto& blocks : around) blocks.fill(NO_VOXEL);
   for (std::size_t b = 0; b < around.size(); ++b) {
     const Voxel& block = blocks_.voxels()[b];
-    for (int n = 0; n < 9; ++n)
-      around[b][static_cast<std::size_t>(n)] =
-          blocks_.find({block.i + n % 3 - 1, block.j + n / 3 - 1, block.k});
+    around[b][4] = static_cast<VoxelIndex>(b);
+    for (int n = 5; n < 9; ++n) {  // the other four are seen from the other side
+      const VoxelIndex other = blocks_.find({block.i + n % 3 - 1, block.j + n / 3 - 1, block.k});
+      if (other == NO_VOXEL) continue;
+      around[b][static_cast<std::size_t>(n)] = other;
+      around[static_cast<std::size_t>(other)][static_cast<std::size_t>(8 - n)] = static_cast<VoxelIndex>(b);
+    }
   }
   const auto floorDivided = [&](int value) { return value < 0 ? -1 : value / divisions_; };
   neighbours_.resize(size());
@@ -210,13 +225,13 @@ std::vector<float> concavity(const Relief& relief, const std::vector<float>& hei
 }
 
 std::vector<std::int32_t> basins(const Relief& relief, const std::vector<float>& values) {
-  std::vector<std::pair<float, ColumnIndex>> order(values.size());
-  for (std::size_t c = 0; c < values.size(); ++c) order[c] = {values[c], static_cast<ColumnIndex>(c)};
+  std::vector<std::uint64_t> order(values.size());
+  for (std::size_t c = 0; c < values.size(); ++c) order[c] = sortKey(values[c], c);
   std::sort(order.begin(), order.end());
   std::vector<std::int32_t> basin(values.size(), -1);
   std::int32_t count = 0;
-  for (const auto& [value, column] : order) {
-    const auto c = static_cast<std::size_t>(column);
+  for (const std::uint64_t key : order) {
+    const auto c = static_cast<std::size_t>(key & 0xFFFFFFFFU);
     ColumnIndex lowest = NO_COLUMN;
     for (const ColumnIndex n : relief.neighbours(c)) {
       if (n == NO_COLUMN || basin[static_cast<std::size_t>(n)] < 0) continue;

@@ -42,7 +42,7 @@ DIR is made if need be and receives
                                          uncertain it is [m]
   ground_surface.tif                     the same as GeoTIFF, in the coordinates of CLOUD: height, uncertainty and
                                          supported, where the program is built with GDAL
-  segments.csv                           place, extent and height of each segment
+  segments.csv                           place, size, volume and fitted body of each segment
   report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores; the origin that
                                          is subtracted in all of these where coordinates are large
   elevation.png ground.png spectrum.png labels.png segments.png
