@@ -55,8 +55,8 @@ class ObjectClusterExtraction : public pcl::PCLBase<PointT> {
   Eigen::Vector3d getUpDirection() const { return up_; }
 
   /** Height above the ground [m], as GroundSegmentation::getHeightAboveGround() gives it: one for each point
-   * of the cloud or, with setIndices(), one for each index. Empty, the default: not known. The clusters do without
-   * it; it is kept for who measures them by core::measureObject().
+   * of the cloud or, with setIndices(), one for each index. Empty, the default: not known. The clusters do
+   * without it; it is kept for who measures them by core::measureObject().
    */
   void setHeightAboveGround(std::vector<double> heights) { heights_ = std::move(heights); }
   const std::vector<double>& getHeightAboveGround() const { return heights_; }
