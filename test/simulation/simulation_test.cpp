@@ -370,5 +370,34 @@ INSTANTIATE_TEST_SUITE_P(Parameters, InvalidParameter,
                                          Invalid{"altitude", "1", [](P& p) { p.altitude = 1.0; }},
                                          Invalid{"baseline", "nan", [](P& p) { p.baseline = kNan; }}));
 
+TEST(SimulatedObjects, HoldThePointsOfTheirSegments) {
+  SimulationParameters parameters;
+  parameters.scene = SceneKind::PIPES;
+  parameters.object_share = 0.3;
+  parameters.points = 20000;
+  parameters.tilt_degrees = 20;
+  const SimulatedScan scan = simulateScan(parameters);
+  const std::vector<SimulatedObject> objects = simulatedObjects(parameters);
+  ASSERT_FALSE(objects.empty());
+  for (std::size_t n = 0; n < objects.size(); ++n) {
+    const SimulatedObject& object = objects[n];
+    SCOPED_TRACE(testing::Message() << "object " << n);
+    EXPECT_EQ(object.segment, static_cast<std::int32_t>(n) + 1);
+    EXPECT_NEAR(object.axis.norm(), 1, 1e-9);
+    EXPECT_GE(object.share_seen, 0);
+    EXPECT_LE(object.share_seen, 1);
+    EXPECT_GT(object.volume, 0);
+    EXPECT_LT(object.volume, 3.1416 * object.radius * object.radius * object.length);
+  }
+  for (std::size_t n = 0; n < scan.segments.size(); ++n) {
+    if (scan.segments[n] == 0) continue;
+    const SimulatedObject& object = objects.at(static_cast<std::size_t>(scan.segments[n] - 1));
+    const Eigen::Vector3d offset =
+        scan.points.col(static_cast<Eigen::Index>(n)).cast<double>() - object.centre;
+    EXPECT_LE(std::abs(offset.dot(object.axis)), 0.5 * object.length + 6 * parameters.noise);
+    EXPECT_LE(offset.cross(object.axis).norm(), object.radius + 6 * parameters.noise);
+  }
+}
+
 }  // namespace
 }  // namespace pcl_fft_ground::core
