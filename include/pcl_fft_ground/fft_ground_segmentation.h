@@ -77,7 +77,8 @@ class FFTGroundSegmentation : public GroundSegmentation<PointT> {
   void setMaximumSlope(double slope);
   double getMaximumSlope() const { return robust_.max_slope.value_or(0.0); }
 
-  /// ROBUST: shortest wavelength of the ground [m], above 0. Default: chosen from the data.
+  /// ROBUST: shortest wavelength of the ground [m], above 0; less than two cells acts as two. Default: chosen
+  /// from the data.
   void setFinestWavelength(double wavelength);
   /// The wavelength set; where it is chosen from the data that of the last run, NaN before the first.
   double getFinestWavelength() const;

@@ -17,6 +17,8 @@
 
 namespace pcl_fft_ground {
 
+using core::SideSource;
+using core::UpDirection;
 using core::UpEstimation;
 using core::Yaw;
 
@@ -49,9 +51,17 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   void segment(pcl::PointIndices& ground, pcl::PointIndices& objects);
 
   /// Reference direction of positive elevation in the frame of the input, any finite length above 0; kept
-  /// normalised.
+  /// normalised. Until it is called +z is the reference, and AUTO may find that another direction is up.
   void setUpDirection(const Eigen::Vector3d& up);
-  Eigen::Vector3d getUpDirection() const { return frame_parameters_.up_direction; }
+  Eigen::Vector3d getUpDirection() const {
+    return frame_parameters_.up_direction.value_or(Eigen::Vector3d::UnitZ());
+  }
+
+  /// Where the sensor stood, finite, in the frame of the input [m]: above the ground, which tells AUTO the
+  /// side. (The sensor origin of a cloud is not heeded: it is the pose of its frame.)
+  void setSensorPosition(const Eigen::Vector3d& position);
+  /// The position set; NaN where it is not.
+  Eigen::Vector3d getSensorPosition() const;
 
   /// How the direction of positive elevation is found, see core::UpEstimation.
   void setUpEstimation(UpEstimation estimation);
@@ -79,6 +89,9 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   /// an input or a valid list of indices none. Transformed at each call.
   core::Points getLevelPoints() const;
 
+  /// Up in the last run, in the frame of the input, what told it and how sure it is.
+  const UpDirection& getUp() const { return up_; }
+
   /// Frame of the last run: brings input points into the level frame whose +z is up. Identity before the
   /// first run.
   const Eigen::Isometry3d& getFrame() const { return frame_from_input_; }
@@ -89,7 +102,9 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   /// Why the last run could not segment its input; empty if it could.
   const std::string& getError() const { return error_; }
 
-  /// What the last run found remarkable, a sentence each; the same went to PCL_WARN.
+  /// What the last run found remarkable, a sentence each with the value, what it means and the option that helps:
+  /// results that cannot be right, up that is doubtful (getUp()), far points. Usually none. The same went to
+  /// PCL_WARN.
   const std::vector<std::string>& getWarnings() const { return warnings_; }
 
  protected:
@@ -146,6 +161,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   core::FrameParameters frame_parameters_;
   bool up_estimation_is_given_ = false;
   std::optional<double> height_tolerance_;
+  UpDirection up_;
   Eigen::Isometry3d frame_from_input_ = Eigen::Isometry3d::Identity();
   pcl::Indices far_points_;
   std::string error_;

@@ -34,14 +34,19 @@ UsageError invalidValue(const std::string& command, const po::options_descriptio
                     (is_real ? "number" : "whole number"));
 }
 
-/// Ties negative numbers, and the three values of a direction, to the option before them.
+/// True for options that take three words.
+bool takesThree(const std::string& word) {
+  return word == "--up-direction" || word == "--sensor";
+}
+
+/// Ties negative numbers, and the three values of a direction or a place, to the option before them.
 std::vector<std::string> tieValues(const std::string& command, const std::vector<std::string>& arguments) {
   std::vector<std::string> tied;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
-    if (word == "--up-direction") {
+    if (takesThree(word)) {
       if (i + 3 >= arguments.size())
-        throw UsageError(command + ": --up-direction: allowed are three numbers, X Y Z");
+        throw UsageError(command + ": " + word + ": allowed are three numbers, X Y Z");
       tied.push_back(word + "=" + arguments[i + 1] + " " + arguments[i + 2] + " " + arguments[i + 3]);
       i += 3;
     } else if (isOptionName(word) && i + 1 < arguments.size() && isNegativeNumber(arguments[i + 1])) {

@@ -12,8 +12,8 @@ constexpr unsigned HELP_TEXT_WIDTH = 60;
 
 /** Parses the words behind a command in the manner that all commands share.
  *
- * `--name value` and `--name=value`, negative numbers too; `--up-direction X Y Z` takes three words and
- * yields one, "X Y Z". Names are written out in full.
+ * `--name value` and `--name=value`, negative numbers too; `--up-direction X Y Z` and `--sensor X Y Z` take
+ * three words and yields one, "X Y Z". Names are written out in full.
  *
  * \param command name of the command, for the messages
  * \param positional the options that take the words without a name

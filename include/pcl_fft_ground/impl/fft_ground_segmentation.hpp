@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "pcl_fft_ground/core/ground/ground_warnings.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
 #include "pcl_fft_ground/impl/ground_segmentation.hpp"
 
@@ -240,7 +241,9 @@ core::Labels FFTGroundSegmentation<PointT>::labelByRobustFit(const core::Points&
   core::RobustLabels labelled = core::labelRobust(points, ground);
   ground_ = std::move(ground);
   points_below_ = labelled.below;
-  warnOfLargeObjects();
+  for (const std::string& sentence :
+       core::warningsAbout(std::get<core::RobustGround>(ground_), points, labelled.labels, parameters))
+    this->warn(sentence);
   if (low_pass_.cutoff_frequency)
     this->warn("the cut-off frequency has no influence on the robust estimator: see setFinestWavelength()");
   return std::move(labelled.labels);
@@ -265,7 +268,7 @@ void FFTGroundSegmentation<PointT>::warnOfLargeObjects() {
   std::ostringstream sentence;
   sentence.precision(3);
   sentence << "the maximum object size of " << *low_pass_.max_object_size
-           << " m exceeds the extent of the scan, " << extent << " m";
+           << " m exceeds the extent of the scan, " << extent << " m: are the coordinates in metres?";
   this->warn(sentence.str());
 }
 

@@ -10,8 +10,7 @@ namespace pcl_fft_ground {
 
 template <typename PointT>
 GridGroundSegmentation<PointT>::GridGroundSegmentation(bool extract_removed_indices)
-    : GroundSegmentation<PointT>("GridGroundSegmentation",
-                                 {Eigen::Vector3d::UnitZ(), UpEstimation::GIVEN, Yaw::NONE},
+    : GroundSegmentation<PointT>("GridGroundSegmentation", {{}, UpEstimation::GIVEN, Yaw::NONE, {}},
                                  extract_removed_indices) {}
 
 template <typename PointT>

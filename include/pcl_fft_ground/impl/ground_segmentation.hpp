@@ -51,6 +51,7 @@ GroundSegmentation<PointT>::GroundSegmentation(const GroundSegmentation& other)
       frame_parameters_(other.frame_parameters_),
       up_estimation_is_given_(other.up_estimation_is_given_),
       height_tolerance_(other.height_tolerance_),
+      up_(other.up_),
       frame_from_input_(other.frame_from_input_),
       far_points_(other.far_points_),
       error_(other.error_),
@@ -66,6 +67,7 @@ GroundSegmentation<PointT>& GroundSegmentation<PointT>::operator=(const GroundSe
   frame_parameters_ = other.frame_parameters_;
   up_estimation_is_given_ = other.up_estimation_is_given_;
   height_tolerance_ = other.height_tolerance_;
+  up_ = other.up_;
   frame_from_input_ = other.frame_from_input_;
   far_points_ = other.far_points_;
   error_ = other.error_;
@@ -94,6 +96,19 @@ void GroundSegmentation<PointT>::setUpDirection(const Eigen::Vector3d& up) {
   requireParameter(up.allFinite() && length > 0, "length of the up direction", length,
                    "a finite number above 0");
   frame_parameters_.up_direction = (up / up.cwiseAbs().maxCoeff()).normalized();
+}
+
+template <typename PointT>
+void GroundSegmentation<PointT>::setSensorPosition(const Eigen::Vector3d& position) {
+  requireParameter(position.allFinite(), "largest coordinate of the sensor position",
+                   position.cwiseAbs().maxCoeff(), "a finite number of metres");
+  frame_parameters_.sensor_position = position;
+}
+
+template <typename PointT>
+Eigen::Vector3d GroundSegmentation<PointT>::getSensorPosition() const {
+  constexpr double NOT_SET = std::numeric_limits<double>::quiet_NaN();
+  return frame_parameters_.sensor_position.value_or(Eigen::Vector3d::Constant(NOT_SET));
 }
 
 template <typename PointT>
@@ -189,11 +204,14 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   far_points_.clear();
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   if (!points.areValid()) {
+    up_ = core::UpDirection();
     labelScan(core::PreparedScan());  // forgets the last run
     reportError("the indices reach beyond the cloud of " + std::to_string(input_->size()) + " points");
     return {};
   }
   const core::PreparedScan scan = core::prepare(points.rawPoints(), frame_parameters_);
+  up_ = scan.up;
+  for (const std::string& sentence : up_.warnings) warn(sentence);
   core::Labels labels = labelScan(scan);
   const std::vector<Eigen::Index>& far = scan.usable.far;
   for (const Eigen::Index n : far) far_points_.push_back(points.index(static_cast<std::size_t>(n)));

@@ -8,8 +8,7 @@ namespace pcl_fft_ground {
 
 template <typename PointT>
 NaiveGroundSegmentation<PointT>::NaiveGroundSegmentation(bool extract_removed_indices)
-    : GroundSegmentation<PointT>("NaiveGroundSegmentation",
-                                 {Eigen::Vector3d::UnitZ(), UpEstimation::GIVEN, Yaw::NONE},
+    : GroundSegmentation<PointT>("NaiveGroundSegmentation", {{}, UpEstimation::GIVEN, Yaw::NONE, {}},
                                  extract_removed_indices) {}
 
 template <typename PointT>

@@ -9,8 +9,7 @@ namespace pcl_fft_ground {
 
 template <typename PointT>
 PlanarGroundSegmentation<PointT>::PlanarGroundSegmentation(bool extract_removed_indices)
-    : GroundSegmentation<PointT>("PlanarGroundSegmentation",
-                                 {Eigen::Vector3d::UnitZ(), UpEstimation::GIVEN, Yaw::NONE},
+    : GroundSegmentation<PointT>("PlanarGroundSegmentation", {{}, UpEstimation::GIVEN, Yaw::NONE, {}},
                                  extract_removed_indices) {}
 
 template <typename PointT>

@@ -42,11 +42,15 @@ class ParameterSetter {
   /// One that reads the same options and notes them elsewhere.
   ParameterSetter notingIn(nlohmann::ordered_json& noted) const { return {values_, noted}; }
 
+  bool isGiven(const std::string& option) const {
+    return values_.count(option) != 0 && !values_[option].defaulted();
+  }
+
   /// Calls the setter if the option was given; its complaint becomes one about the option. Then notes the
   /// getter's value.
   template <typename Value, typename Set, typename Get>
   void set(const std::string& option, const Set& setter, const Get& getter) {
-    const bool given = values_.count(option) != 0 && !values_[option].defaulted();
+    const bool given = isGiven(option);
     try {
       if (given) setter(values_[option].as<Value>());
     } catch (const pcl::PCLException& problem) {

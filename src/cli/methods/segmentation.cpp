@@ -49,6 +49,11 @@ core::UsablePoints usablePoints(const pcl::PointCloud<Point>& cloud) {
   return core::usablePoints(std::move(points));
 }
 
+void setInput(const Cloud& cloud, Segmenter& segmenter) {
+  segmenter.filter->setInputCloud(cloud.points);
+  if (segmenter.sensor) segmenter.filter->setSensorPosition(*segmenter.sensor - cloud.origin);
+}
+
 core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects) {
   core::Labels labels(count, core::Label::NEITHER);
   for (const pcl::index_t n : ground.indices) labels[static_cast<std::size_t>(n)] = core::Label::GROUND;
@@ -59,7 +64,7 @@ core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const 
 Segmentation segmentCloud(const std::string& path, const Cloud& cloud, Segmenter& segmenter) {
   requireFinitePoint(path, *cloud.points);
   Segmentation result;
-  segmenter.filter->setInputCloud(cloud.points);
+  setInput(cloud, segmenter);
   segmenter.filter->segment(result.ground, result.objects);
   if (!segmenter.filter->getError().empty()) throw WorkError(path + ": " + segmenter.filter->getError());
   result.labels = labelsOf(cloud.points->size(), result.ground, result.objects);

@@ -50,6 +50,9 @@ void requireFinitePoint(const std::string& path, const pcl::PointCloud<Point>& p
 /// The points of a cloud that can be worked with.
 core::UsablePoints usablePoints(const pcl::PointCloud<Point>& cloud);
 
+/// Gives a cloud to a segmenter, and the place of the sensor in the coordinates of its points.
+void setInput(const Cloud& cloud, Segmenter& segmenter);
+
 /// A label per point of a cloud of `count` points: NEITHER where it is in neither list.
 core::Labels labelsOf(std::size_t count, const pcl::PointIndices& ground, const pcl::PointIndices& objects);
 

@@ -35,13 +35,13 @@ constexpr std::array<std::pair<const char*, Yaw>, 3> YAWS{{{"min-area-rectangle"
                                                            {"principal-axes", Yaw::PRINCIPAL_AXES},
                                                            {"none", Yaw::NONE}}};
 
-Eigen::Vector3d toDirection(const std::string& text) {
+Eigen::Vector3d toVector(const std::string& option, const std::string& text) {
   std::string_view rest = text;
   const std::optional<double> x = parseNumber<double>(takeWord(rest)),
                               y = parseNumber<double>(takeWord(rest)),
                               z = parseNumber<double>(takeWord(rest));
   if (!x || !y || !z || !takeWord(rest).empty())
-    throw UsageError("--up-direction " + text + ": allowed are three numbers, X Y Z");
+    throw UsageError("--" + option + " " + text + ": allowed are three numbers, X Y Z");
   return {*x, *y, *z};
 }
 
@@ -68,7 +68,13 @@ po::options_description commonOptions() {
       "height above the ground up to which a point is ground [m] (0; graph-cut: 0.02; fft: chosen from the "
       "data)");
   add("up-direction", po::value<std::string>()->value_name("X Y Z"),
-      "direction of positive elevation (0 0 1)");
+      "direction of positive elevation (0 0 1; with --up-estimation auto another one, where the points "
+      "clearly "
+      "speak for it)");
+  add("sensor", po::value<std::string>()->value_name("X Y Z"),
+      "where the sensor stood, in the coordinates of the input: on the upper side of the ground (found, "
+      "where "
+      "the points show rays from 0 0 0)");
   add("up-estimation", po::value<std::string>()->value_name("NAME"),
       "principal-axis: the direction in which the points vary least, turned towards --up-direction; given: "
       "--up-direction itself; auto: the principal axis where it can be trusted (fft and graph-cut: "
@@ -83,8 +89,12 @@ po::options_description commonOptions() {
 
 void setUpCommon(GroundSegmentation<Point>& filter, ParameterSetter& parameters) {
   parameters.set<std::string>(
-      "up-direction", [&](const auto& v) { filter.setUpDirection(toDirection(v)); },
+      "up-direction", [&](const auto& v) { filter.setUpDirection(toVector("up-direction", v)); },
       [&] { return asList(filter.getUpDirection()); });
+  if (parameters.isGiven("sensor"))
+    parameters.set<std::string>(
+        "sensor", [&](const auto& v) { filter.setSensorPosition(toVector("sensor", v)); },
+        [&] { return asList(filter.getSensorPosition()); });
   parameters.set<std::string>(
       "up-estimation",
       [&](const auto& v) { filter.setUpEstimation(valueNamed("up-estimation", v, UP_ESTIMATIONS)); },
@@ -154,6 +164,7 @@ Segmenter makeSegmenter(const std::string& name, const po::variables_map& values
   segmenter.method = name;
   segmenter.has_own_tolerance = method->tolerance == Tolerance::OWN;
   segmenter.default_cell_size = cellSize(values);
+  if (values.count("sensor") != 0) segmenter.sensor = segmenter.filter->getSensorPosition();
   return segmenter;
 }
 

@@ -5,6 +5,7 @@
 #include <boost/program_options.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct Segmenter {
   GroundSegmentation<Point>::Ptr filter;        ///< ready but for its input
   FFTGroundSegmentation<Point>* fft = nullptr;  ///< the same object if it works in the frequency domain
   bool has_own_tolerance = false;               ///< whether it needs none to be told
-  double default_cell_size = 0;                 ///< for methods without cells [m]
+  std::optional<Eigen::Vector3d> sensor;  ///< its place in the coordinates of the file, if it was told [m]
+  double default_cell_size = 0;           ///< for methods without cells [m]
   nlohmann::ordered_json
       parameters;  ///< those set or by default: option -> {"value", "from": "option" or "default"}
 

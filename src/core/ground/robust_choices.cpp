@@ -57,19 +57,25 @@ RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bo
                             Choices& choices) {
   constexpr double NARROWEST = 1e-3;  // of the other extent
   constexpr double SLOPE = 0.04;
+  constexpr double BEYOND_ALL = 1000;  // times the scan: anything longer does the same
+  constexpr double NYQUIST = 2;        // cells to the shortest wavelength that they hold
   const Eigen::Array2d extents = (bounds.high - bounds.low).head<2>();
   RobustPlan plan;
   plan.extent = extents.minCoeff();
   const double widest = widestOf(extents);
   const double extent = plan.extent > NARROWEST * widest ? plan.extent : widest;
-  plan.max_object_size = parameters.max_object_size.value_or(parameters.relative_max_object_size * extent);
-  plan.cells = gridAround(
-      bounds, chooseCellSize(parameters.cell_size, plan.max_object_size, extents, points, choices));
+  const double largest = BEYOND_ALL * widest;
+  plan.max_object_size =
+      std::min(largest, parameters.max_object_size.value_or(parameters.relative_max_object_size * extent));
+  plan.cells = gridAround(bounds, std::min(largest, chooseCellSize(parameters.cell_size, plan.max_object_size,
+                                                                   extents, points, choices)));
   plan.statistic =
       choose(parameters.statistic, CellStatistic::LOWEST, "statistic",
              "walls share cells with the ground; its points' mean takes over once it is found", choices);
   plan.finest_wavelength =
       chooseFinestWavelength(parameters, plan.max_object_size, plan.cells.cell_size, choices);
+  plan.finest_wavelength = std::clamp(plan.finest_wavelength, NYQUIST * plan.cells.cell_size,
+                                      std::max(NYQUIST * plan.cells.cell_size, largest));
   plan.slope = SLOPE;
   return plan;
 }

@@ -5,6 +5,13 @@
 
 namespace pcl_fft_ground::core {
 
+namespace {
+
+/// A coefficient that is suppressed so much is none. Higher ones overflow at high orders.
+constexpr double STRONGEST_PENALTY = 1e12;
+
+}  // namespace
+
 Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Index cols, double cell_size) {
   // Coefficient k of an axis of N cells has k / (2 N cell) cycles per metre.
   const auto ratios = [&](Eigen::Index n) -> Eigen::ArrayXd {
@@ -14,7 +21,7 @@ Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Inde
   const double epsilon_squared = std::pow(10.0, limit.passband_ripple / 10) - 1;
   const Eigen::ArrayXXd squared_ratio =
       ratios(rows).replicate(1, cols) + ratios(cols).transpose().replicate(rows, 1);
-  return epsilon_squared * squared_ratio.pow(static_cast<int>(limit.order));
+  return (epsilon_squared * squared_ratio.pow(static_cast<int>(limit.order))).min(STRONGEST_PENALTY);
 }
 
 PenalisedFit::PenalisedFit(Eigen::Index rows, Eigen::Index cols, double cell_size, const BandLimit& limit)
@@ -56,7 +63,7 @@ void PenalisedFit::improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd
     surface_ += (length * step_).cast<double>();
     if (length * step_.abs().maxCoeff() < static_cast<float>(effort.precision)) break;
     residual_ -= length * image_;
-    const float next = (preconditioner_ * residual_.square()).sum();
+    const float next = (preconditioner_ * residual_ * residual_).sum();
     direction_ = preconditioner_ * residual_ + next / product * direction_;
     product = next;
   }

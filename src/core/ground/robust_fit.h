@@ -13,7 +13,7 @@ struct BandLimit {
   double passband_ripple = 3.0;  ///< A of eq. (1) [dB], > 0
 };
 
-/** P_k = eps^2 (d / d_c)^(2n) of every coefficient of the cosine transform of a grid.
+/** P_k = eps^2 (d / d_c)^(2n) of every coefficient of the cosine transform of a grid, at most 1e12.
  * \param cell_size [m]
  */
 Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Index cols, double cell_size);

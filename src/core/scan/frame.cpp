@@ -1,38 +1,12 @@
 #include "pcl_fft_ground/core/scan/frame.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
-#include <optional>
 
 #include "pcl_fft_ground/core/scan/convex_hull.h"
 #include "scan/hull_filter.h"
-#include "scan/robust_up.h"
 
 namespace pcl_fft_ground::core {
 namespace {
-
-/// Direction of positive elevation, a unit vector.
-Eigen::Vector3d estimateUp(const PointsView& points, const Eigen::Matrix3d& covariance,
-                           const FrameParameters& parameters) {
-  const Eigen::Vector3d given = parameters.up_direction.normalized();
-  if (parameters.up_estimation == UpEstimation::GIVEN) return given;
-
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  const Eigen::Vector3d variance = solver.eigenvalues();
-  const bool no_plane = variance[1] <= 1e-9 * variance[2];
-  if (no_plane) return given;
-  const Eigen::Vector3d axis = solver.eigenvectors().col(0);
-  const Eigen::Vector3d up = axis.dot(given) < 0 ? Eigen::Vector3d(-axis) : axis;
-  if (parameters.up_estimation == UpEstimation::PRINCIPAL_AXIS) return up;
-
-  constexpr double FLATTEST_VARIANCE_RATIO = 0.04;  // a fifth, squared
-  constexpr double MOST_LEANING = 0.7071;           // cosine of 45 degrees
-  const bool trusted = variance[0] <= FLATTEST_VARIANCE_RATIO * variance[1] && up.dot(given) >= MOST_LEANING;
-  const Eigen::Vector3d fallback = trusted ? up : given;
-  constexpr double AGREEING = 0.9986;  // cosine of 3 degrees: all points then tell more precisely than half
-  const std::optional<Eigen::Vector3d> normal = normalOfFlattestHalf(points, given);
-  return normal && !(trusted && normal->dot(up) >= AGREEING) ? *normal : fallback;
-}
 
 /// The smallest rotation that turns a unit vector on to +z.
 Eigen::Matrix3d levelFromInput(const Eigen::Vector3d& up) {
@@ -70,18 +44,22 @@ double estimateYaw(const PointsView& points, const PointStatistics& statistics,
 
 }  // namespace
 
-Eigen::Isometry3d estimateFrame(const PointsView& points, const PointStatistics& statistics,
-                                const FrameParameters& parameters) {
+Eigen::Isometry3d levelFrame(const PointsView& points, const PointStatistics& statistics,
+                             const Eigen::Vector3d& up, Yaw yaw) {
   if (points.cols() == 0) return Eigen::Isometry3d::Identity();
-  const Eigen::Matrix3d level_from_input =
-      levelFromInput(estimateUp(points, statistics.covariance, parameters));
-  const double yaw = estimateYaw(points, statistics, level_from_input, parameters.yaw);
+  const Eigen::Matrix3d level_from_input = levelFromInput(up);
+  const double angle = estimateYaw(points, statistics, level_from_input, yaw);
 
   Eigen::Isometry3d frame_from_input = Eigen::Isometry3d::Identity();
   frame_from_input.linear() =
-      Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level_from_input;
+      Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level_from_input;
   frame_from_input.translation() = -(frame_from_input.linear() * statistics.mean);
   return frame_from_input;
+}
+
+Eigen::Isometry3d estimateFrame(const PointsView& points, const PointStatistics& statistics,
+                                const FrameParameters& parameters) {
+  return levelFrame(points, statistics, estimateUp(points, statistics, parameters).axis, parameters.yaw);
 }
 
 Points transformed(Points points, const Eigen::Isometry3d& target_from_source) {

@@ -69,9 +69,10 @@ UsablePoints usablePoints(RawPoints scan) {
 }
 
 PreparedScan prepare(RawPoints scan, const FrameParameters& parameters) {
-  PreparedScan prepared{usablePoints(std::move(scan))};
+  PreparedScan prepared{usablePoints(std::move(scan)), {}};
   UsablePoints& usable = prepared.usable;
-  prepared.frame_from_input = estimateFrame(usable.points, usable.statistics, parameters);
+  prepared.up = estimateUp(usable.points, usable.statistics, parameters);
+  prepared.frame_from_input = levelFrame(usable.points, usable.statistics, prepared.up.axis, parameters.yaw);
   usable.points = transformed(std::move(usable.points), prepared.frame_from_input);
   return prepared;
 }

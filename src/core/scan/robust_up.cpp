@@ -99,8 +99,8 @@ bool isNarrow(const Sheet& sheet) {
   return sheet.breadth < NARROW * sheet.length;
 }
 
-/// The normal of the lowest part of the points where that is clearly thinner than across the sheet: the
-/// ground may have less than half of the points, but it lies below the others.
+/// The normal of the lowest part of the points where that is clearly thinner than across the sheet, and
+/// flatter than the sheet is: the ground may have less than half of the points, but it lies below the others.
 Eigen::Vector3d normalBelow(const Sheet& sheet, const Points& points, const Eigen::Vector3d& given) {
   constexpr float CLEARLY = 0.6F;
   constexpr double AGREEING = 0.9962;  // cosine of 5 degrees: so small a slope the ground may have itself
@@ -112,7 +112,8 @@ Eigen::Vector3d normalBelow(const Sheet& sheet, const Points& points, const Eige
   };
   const bool clearly = thickness(lowest.normal) < CLEARLY * thickness(sheet.normal);
   const bool elsewhere = lowest.normal.dot(sheet.normal) < AGREEING;
-  return clearly && elsewhere && isTrusted(lowest, given) ? lowest.normal : sheet.normal;
+  const bool flatter = lowest.thickness < sheet.thickness;  // else a pit beside the ground and its wall
+  return clearly && elsewhere && flatter && isTrusted(lowest, given) ? lowest.normal : sheet.normal;
 }
 
 }  // namespace

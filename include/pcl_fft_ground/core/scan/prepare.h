@@ -38,6 +38,7 @@ PCL_FFT_GROUND_CORE_EXPORT UsablePoints usablePoints(RawPoints scan);
 /// A scan made ready for a method.
 struct PreparedScan {
   UsablePoints usable;  ///< the points in the level frame, their statistics in the frame of the scan
+  UpDirection up;       ///< in the frame of the scan
   Eigen::Isometry3d frame_from_input = Eigen::Isometry3d::Identity();  ///< brings points of the scan there
 };
 

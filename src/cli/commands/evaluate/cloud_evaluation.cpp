@@ -66,7 +66,7 @@ Evaluation evaluateMethod(const LabelledCloud& cloud, Segmenter& segmenter) {
   row.cloud = cloud.path;
   row.method = segmenter.method;
   GroundSegmentation<Point>& filter = *segmenter.filter;
-  filter.setInputCloud(cloud.cloud.points);
+  setInput(cloud.cloud, segmenter);
   pcl::PointIndices ground, objects;
   const auto start = std::chrono::steady_clock::now();
   filter.segment(ground, objects);

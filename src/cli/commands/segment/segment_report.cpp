@@ -79,6 +79,28 @@ ordered_json describeGround(const FFTGroundSegmentation<Point>* fft) {
           {"points_below", fft->getPointsBelowGround()}};
 }
 
+const char* nameOf(SideSource source) {
+  switch (source) {
+    case SideSource::GIVEN:
+      return "given";
+    case SideSource::OBJECTS:
+      return "objects";
+    case SideSource::SENSOR:
+      return "sensor";
+    case SideSource::PRIOR:
+      break;
+  }
+  return "prior";
+}
+
+ordered_json describeUp(const UpDirection& up) {
+  return {{"axis", {up.axis.x(), up.axis.y(), up.axis.z()}},
+          {"side_from", nameOf(up.side_from)},
+          {"axis_confidence", up.axis_confidence},
+          {"side_confidence", up.side_confidence},
+          {"reasons", up.reasons}};
+}
+
 ordered_json describeElevation(const core::ElevationGrid& elevation) {
   return {{"rows", elevation.geometry.rows},
           {"cols", elevation.geometry.cols},
@@ -115,6 +137,7 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
           {"input", input},
           {"method", segmenter.method},
           {"parameters", std::move(parameters)},
+          {"up", describeUp(segmenter.filter->getUp())},
           {"frame_from_input", asRows(segmenter.filter->getFrame().matrix())},
           {"origin", {cloud.origin.x(), cloud.origin.y(), cloud.origin.z()}},
           {"counts", describeCounts(cloud, segmenter, segmentation)},

@@ -1,0 +1,266 @@
+#include "pcl_fft_ground/core/ground/ground_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace pcl_fft_ground::core {
+namespace {
+
+// Of the scans with a total error of at most 4 % at the size of their largest object, the nearest to each
+// bound is noted; bounds lie well apart from it.
+constexpr double FEWEST_SPACINGS = 2;        // of the points in the largest object: 19 (mobile laser: 80)
+constexpr double LEAST_FILLED = 0.1;         // of the bounding rectangle: 0.20 (a turn of a rotating laser)
+constexpr double CELLS_TO_OBJECT = 8;        // of the cells with which that is measured
+constexpr double PATCH = 1.25;               // of ground, in largest objects: 1.7 (a tile of less than two)
+constexpr double LARGE_ENOUGH = 1.6;         // a scan in which a larger patch would fit, in largest objects
+constexpr double LEAST_GROUND = 0.1;         // of the points: 0.14 (a room)
+constexpr double LEAST_GROUND_CELLS = 0.25;  // of the cells with points: 0.33 (a town with yards)
+constexpr double WIDEST_SPREAD = 0.008;      // in largest objects: 0.0026 (a table, by a depth camera)
+constexpr double MOST_WITHOUT_GROUND = 0.2;  // of the cells with points: 0.04 (a street between houses)
+constexpr double MOST_HIDDEN = 0.045;  // of the points, in the upper half of a tolerance that noise does not
+                                       // explain: 0.036 (sparse airborne laser)
+constexpr double NOISE = 6;            // spreads of the ground beyond which it does not
+
+class Sentence {
+ public:
+  Sentence() { text_.precision(3); }
+  template <typename T>
+  Sentence& operator<<(const T& part) {
+    text_ << part;
+    return *this;
+  }
+  operator std::string() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+};
+
+/// Which squares of a grid hold points.
+struct Squares {
+  Eigen::Index rows = 0, cols = 0;
+  double side = 0;
+  Mask occupied;
+
+  double area() const { return static_cast<double>(occupied.count()) * side * side; }
+};
+
+Squares squaresOf(const PointsView& points, const Bounds& bounds, double side) {
+  const GridGeometry cells = gridAround(bounds, side);
+  Squares squares{cells.rows, cells.cols, side, Mask::Constant(cells.rows, cells.cols, false)};
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    const Eigen::Array2d at = (points.col(n).head<2>().cast<double>() - cells.origin) / side;
+    squares.occupied(std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.x()), 0, cells.rows - 1),
+                     std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.y()), 0, cells.cols - 1)) = true;
+  }
+  return squares;
+}
+
+/// Distance of neighbouring points [m], from squares so large that those with points hold several.
+double spacingOf(const PointsView& points, const Bounds& bounds) {
+  constexpr double IN_SQUARE = 8;
+  constexpr int TRIALS = 8;
+  const Eigen::Array2d extents = (bounds.high - bounds.low).head<2>();
+  const auto count = static_cast<double>(points.cols());
+  double side =
+      std::max(std::sqrt(extents.prod() * IN_SQUARE / count), extents.maxCoeff() * IN_SQUARE / count);
+  for (int n = 0; n < TRIALS && side > 0; ++n) {
+    const double in_square = count / static_cast<double>(squaresOf(points, bounds, side).occupied.count());
+    if (in_square <= 1.15 * IN_SQUARE) break;
+    side *= std::sqrt(IN_SQUARE / in_square);
+  }
+  return side / std::sqrt(IN_SQUARE);
+}
+
+/// The longer side [m] of the largest patch of squares that touch.
+double largestPatch(Squares squares) {
+  Eigen::Index longest = 0;
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> waiting;
+  const auto visit = [&](Eigen::Index i, Eigen::Index j) {
+    if (i < 0 || j < 0 || i >= squares.rows || j >= squares.cols || !squares.occupied(i, j)) return;
+    squares.occupied(i, j) = false;
+    waiting.emplace_back(i, j);
+  };
+  for (Eigen::Index j = 0; j < squares.cols; ++j)
+    for (Eigen::Index i = 0; i < squares.rows; ++i) {
+      Eigen::Index low_i = i, high_i = i, low_j = j, high_j = j;
+      visit(i, j);
+      while (!waiting.empty()) {
+        const auto [k, l] = waiting.back();
+        waiting.pop_back();
+        low_i = std::min(low_i, k), high_i = std::max(high_i, k);
+        low_j = std::min(low_j, l), high_j = std::max(high_j, l);
+        longest = std::max({longest, high_i - low_i + 1, high_j - low_j + 1});
+        for (Eigen::Index di = -1; di <= 1; ++di)
+          for (Eigen::Index dj = -1; dj <= 1; ++dj) visit(k + di, l + dj);
+      }
+    }
+  return static_cast<double>(longest) * squares.side;
+}
+
+Points groundPoints(const PointsView& points, const Labels& labels) {
+  Points ground(3, points.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index n = 0; n < points.cols(); ++n)
+    if (labels[static_cast<std::size_t>(n)] == Label::GROUND) ground.col(count++) = points.col(n);
+  ground.conservativeResize(Eigen::NoChange, count);
+  return ground;
+}
+
+/// Cells that hold ground.
+Mask groundCells(const Points& ground, const GridGeometry& cells) {
+  Mask mask = Mask::Constant(cells.rows, cells.cols, false);
+  for (Eigen::Index n = 0; n < ground.cols(); ++n) {
+    const Eigen::Array2d at = (ground.col(n).head<2>().cast<double>() - cells.origin) / cells.cell_size;
+    mask(std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.x()), 0, cells.rows - 1),
+         std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.y()), 0, cells.cols - 1)) = true;
+  }
+  return mask;
+}
+
+/// Share of the cells with points that are farther from ground than a distance [m].
+double shareWithoutGround(const Mask& observed, const Mask& ground, const GridGeometry& cells,
+                          double distance) {
+  if (!ground.any()) return 1;
+  Eigen::ArrayXXd nearest(cells.rows, cells.cols);
+  for (Eigen::Index cell = 0; cell < nearest.size(); ++cell) nearest.data()[cell] = static_cast<double>(cell);
+  fillEmptyCells(nearest, ground);
+  Eigen::Index without = 0;
+  for (Eigen::Index j = 0; j < cells.cols; ++j)
+    for (Eigen::Index i = 0; i < cells.rows; ++i) {
+      const auto cell = static_cast<Eigen::Index>(nearest(i, j));
+      const Eigen::Vector2d steps(static_cast<double>(cell % cells.rows - i),
+                                  static_cast<double>(cell / cells.rows - j));
+      if (observed(i, j) && cells.cell_size * steps.norm() > distance) ++without;
+    }
+  return static_cast<double>(without) / static_cast<double>(std::max<Eigen::Index>(observed.count(), 1));
+}
+
+/// The scan and what was found in it.
+struct Findings {
+  const RobustGround& ground;
+  const PointsView& points;
+  const RobustParameters& parameters;
+  Bounds bounds;
+  Points ground_points;
+  double size = 0, widest = 0;  ///< of the largest object and of the scan [m]
+  double spacing = 0;           ///< of the points [m]
+};
+
+using Warnings = std::vector<std::string>;
+
+/// True where it has warned.
+bool checkUnit(const Findings& found, Warnings& warnings) {
+  const std::size_t before = warnings.size();
+  const Eigen::Array3d sides = found.bounds.high - found.bounds.low;
+  const bool given = found.parameters.max_object_size.has_value();
+  if (given && found.size < FEWEST_SPACINGS * found.spacing)
+    warnings.push_back(Sentence() << "the largest object, " << found.size
+                                  << " m, is not clearly larger than the distance of the points, "
+                                  << found.spacing
+                                  << " m: are the coordinates in metres? see --max-object-size");
+  constexpr double MUCH_HIGHER = 20;
+  if (sides.z() > MUCH_HIGHER * found.widest)
+    warnings.push_back(
+        Sentence() << "the scan is " << sides.z() << " m high but only " << found.widest
+                   << " m wide: are x and y in degrees, or another axis up? see --up-direction");
+  return warnings.size() > before;
+}
+
+void checkCoverage(const Findings& found, Warnings& warnings) {
+  const double side = std::max({found.size / CELLS_TO_OBJECT, found.spacing, found.widest / 4000});
+  const Squares squares = squaresOf(found.points, found.bounds, side);
+  const double filled = squares.occupied.cast<double>().mean();
+  if (filled < LEAST_FILLED)
+    warnings.push_back(Sentence() << "only " << 100 * filled
+                                  << " % of the bounding rectangle holds points: the ground between them is "
+                                     "guessed; segment the parts one by one");
+}
+
+/// True where it has warned: what is said of little ground is of no use then.
+bool checkPatches(const Findings& found, Warnings& warnings) {
+  if (found.widest < LARGE_ENOUGH * found.size || found.size > found.ground.extent) return false;
+  const double side = std::max({found.size / CELLS_TO_OBJECT, 2.5 * found.spacing, found.widest / 4000});
+  const double patch = largestPatch(squaresOf(found.ground_points, found.bounds, side));
+  if (patch >= PATCH * found.size) return false;
+  warnings.push_back(
+      Sentence() << "no ground is seen: what was taken for it lies in patches of at most " << patch
+                 << " m, no larger than the largest object, " << found.size
+                 << " m; if the ground was removed before, all points are objects; if not, see "
+                    "--max-object-size");
+  return true;
+}
+
+void checkAmount(const Findings& found, const Mask& ground_cells, Warnings& warnings) {
+  const Mask& observed = found.ground.elevation.observed;
+  const double of_points =
+      static_cast<double>(found.ground_points.cols()) / static_cast<double>(found.points.cols());
+  const double of_cells = static_cast<double>((observed && ground_cells).count()) /
+                          static_cast<double>(std::max<Eigen::Index>(observed.count(), 1));
+  const double spread = found.ground.scale;
+  if (of_points >= LEAST_GROUND && of_cells >= LEAST_GROUND_CELLS && spread <= WIDEST_SPREAD * found.size)
+    return;
+  warnings.push_back(
+      Sentence() << "little or no ground was seen, as under vegetation or where it was removed: "
+                 << 100 * of_points << " % of the points, in " << 100 * of_cells
+                 << " % of the cells with points, spread by " << spread << " m; what is lower than "
+                 << found.ground.tolerance << " m counts as ground, see --height-tolerance");
+}
+
+void checkReach(const Findings& found, const Mask& ground_cells, Warnings& warnings) {
+  const double without = shareWithoutGround(found.ground.elevation.observed, ground_cells,
+                                            found.ground.elevation.geometry, found.size);
+  if (without >= MOST_WITHOUT_GROUND)
+    warnings.push_back(Sentence() << 100 * without
+                                  << " % of the cells have no ground within the largest object, "
+                                  << found.size << " m: their ground is guessed; see --max-object-size");
+}
+
+void checkTolerance(const Findings& found, Warnings& warnings) {
+  const double least = std::max(NOISE * found.ground.scale, 0.5 * found.ground.tolerance);
+  if (found.parameters.height_tolerance || found.ground.tolerance <= least) return;
+  Eigen::Index hidden = 0;
+  for (Eigen::Index n = 0; n < found.ground_points.cols(); ++n) {
+    const Eigen::Vector3d p = found.ground_points.col(n).cast<double>();
+    hidden += p.z() - found.ground.surface.heightAt(p.x(), p.y()) > least ? 1 : 0;
+  }
+  const double share = static_cast<double>(hidden) / static_cast<double>(found.points.cols());
+  if (share <= MOST_HIDDEN) return;
+  const bool given = found.parameters.max_object_size.has_value();
+  warnings.push_back(Sentence() << 100 * share << " % of the points are more than " << least
+                                << " m above the ground and still ground, as what is lower than "
+                                << found.ground.tolerance << " m is, a share of the largest object"
+                                << (given ? "" : " (half of the scan's extent, as no size is given)")
+                                << ": objects may be lost; see --height-tolerance"
+                                << (given ? "" : " and --max-object-size"));
+}
+
+}  // namespace
+
+std::vector<std::string> warningsAbout(const RobustGround& ground, const PointsView& level_points,
+                                       const Labels& labels, const RobustParameters& parameters) {
+  constexpr Eigen::Index FEWEST_POINTS = 100;  // of fewer nothing can be said but that
+  Warnings warnings;
+  if (ground.surface.height.size() == 0) return warnings;
+  if (parameters.max_object_size && ground.max_object_size > ground.extent)
+    warnings.push_back(Sentence() << "the maximum object size of " << ground.max_object_size
+                                  << " m exceeds the extent of the scan, " << ground.extent
+                                  << " m: are the coordinates in metres, not in kilometres or degrees? see "
+                                     "--max-object-size");
+  if (level_points.cols() < FEWEST_POINTS) return warnings;
+  Findings found{ground, level_points, parameters, boundsOf(level_points),
+                 groundPoints(level_points, labels)};
+  found.size = ground.max_object_size;
+  found.widest = (found.bounds.high - found.bounds.low).head<2>().maxCoeff();
+  if (!(found.widest > 0)) return warnings;
+  found.spacing = spacingOf(level_points, found.bounds);
+  if (checkUnit(found, warnings)) return warnings;  // the rest would follow from it
+  checkCoverage(found, warnings);
+  const Mask ground_cells = groundCells(found.ground_points, ground.elevation.geometry);
+  if (!checkPatches(found, warnings)) checkAmount(found, ground_cells, warnings);
+  checkReach(found, ground_cells, warnings);
+  checkTolerance(found, warnings);
+  return warnings;
+}
+
+}  // namespace pcl_fft_ground::core
