@@ -170,9 +170,62 @@ TEST_F(SegmentCommand, UpMayBeDown) {
   const std::vector<double> label = labels();
   for (const pcl::index_t n : ground.indices) ASSERT_EQ(label[static_cast<std::size_t>(n)], 0) << n;
   for (const pcl::index_t n : objects.indices) ASSERT_EQ(label[static_cast<std::size_t>(n)], 1) << n;
-  segment(pathOf("ceiling.pcd"));
+  segment(pathOf("ceiling.pcd"), {"--up-direction", "0", "0", "1"});
   EXPECT_GT(report()["frame_from_input"][2][2], 0.9);
+  EXPECT_EQ(report()["up"]["side_from"], "given");
   EXPECT_GT(differing(label, labels()), 0u);  // the boxes hang below what is then the ground
+}
+
+/// An even floor of 10 m x 10 m with nine boxes on it, as x, height and y.
+pcl::PointCloud<pcl::PointXYZL> floorWithBoxes(bool z_is_depth) {
+  pcl::PointCloud<pcl::PointXYZL> cloud;
+  for (int n = 0; n < 10000; ++n) {
+    const int i = n % 100, j = n / 100;
+    const bool on_box = i % 33 > 8 && i % 33 < 18 && j % 33 > 12 && j % 33 < 19;
+    pcl::PointXYZL p;
+    p.x = 0.1F * static_cast<float>(i) + 0.003F * static_cast<float>(n * 7 % 10);
+    p.y = 0.1F * static_cast<float>(j) + 0.003F * static_cast<float>(n * 3 % 10);
+    const float height = 0.002F * static_cast<float>(n * 13 % 7) + (on_box ? 0.6F : 0);
+    p.z = z_is_depth ? 30 - height : height;
+    p.label = on_box ? 1 : 0;
+    cloud.push_back(p);
+  }
+  return cloud;
+}
+
+TEST_F(SegmentCommand, DepthsThatArePositiveDownAreFound) {
+  run(runSegment, {makeCloud("depths.pcd", floorWithBoxes(true)), "-o", output(), "--max-object-size", "2"});
+  EXPECT_LT(report()["frame_from_input"][2][2], -0.9);
+  const json up = report()["up"];
+  EXPECT_LT(up["axis"][2], -0.9);
+  EXPECT_EQ(up["side_from"], "objects");
+  EXPECT_GT(up["axis_confidence"], 0.9);
+  EXPECT_GT(up["side_confidence"], 0.7);
+  EXPECT_FALSE(up["reasons"].empty());
+  EXPECT_GT(report()["scores"]["f1"], 0.99);
+}
+
+TEST_F(SegmentCommand, TheSensorTellsTheSide) {
+  pcl::PointCloud<pcl::PointXYZL> bare = floorWithBoxes(false);
+  for (pcl::PointXYZL& p : bare) p.z = p.label == 1 ? p.z - 0.6F : p.z;
+  run(runSegment,
+      {makeCloud("bare.pcd", bare), "-o", output(), "--max-object-size", "2", "--sensor", "5", "5", "-3"});
+  EXPECT_LT(report()["up"]["axis"][2], -0.9);
+  EXPECT_EQ(report()["up"]["side_from"], "sensor");
+  EXPECT_EQ(report()["parameters"]["sensor"]["value"], json({5.0, 5.0, -3.0}));
+  run(runSegment, {pathOf("bare.pcd"), "-o", output(), "--max-object-size", "2"});
+  EXPECT_GT(report()["up"]["axis"][2], 0.9);
+  EXPECT_EQ(report()["up"]["side_from"], "prior");
+}
+
+TEST_F(SegmentCommand, AnotherUnitIsWarnedOf) {
+  pcl::PointCloud<pcl::PointXYZL> millimetres = floorWithBoxes(false);
+  for (pcl::PointXYZL& p : millimetres) p.getVector3fMap() *= 1000;
+  const Printed printed =
+      run(runSegment, {makeCloud("mm.pcd", millimetres), "-o", output(), "--max-object-size", "2"});
+  EXPECT_NE(printed.err.find("warning: "), std::string::npos);
+  EXPECT_NE(printed.err.find("metres"), std::string::npos);
+  EXPECT_NE(report()["warnings"].dump().find("--max-object-size"), std::string::npos);
 }
 
 TEST_F(SegmentCommand, AFarPointIsReportedAndChangesNoOtherLabel) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "scan/point_sample.h"
+
 namespace pcl_fft_ground::core {
 namespace {
 
@@ -58,18 +60,20 @@ Squares squaresOf(const PointsView& points, const Bounds& bounds, double side) {
 
 /// Distance of neighbouring points [m], from squares so large that those with points hold several.
 double spacingOf(const PointsView& points, const Bounds& bounds) {
-  constexpr double IN_SQUARE = 8;
+  constexpr double IN_SQUARE = 8, CLOSE_ENOUGH = 1.15;
   constexpr int TRIALS = 8;
+  constexpr Eigen::Index ENOUGH = 30000;
+  const Points sample = sampleOf(points, ENOUGH);
+  const auto count = static_cast<double>(sample.cols());
   const Eigen::Array2d extents = (bounds.high - bounds.low).head<2>();
-  const auto count = static_cast<double>(points.cols());
   double side =
       std::max(std::sqrt(extents.prod() * IN_SQUARE / count), extents.maxCoeff() * IN_SQUARE / count);
   for (int n = 0; n < TRIALS && side > 0; ++n) {
-    const double in_square = count / static_cast<double>(squaresOf(points, bounds, side).occupied.count());
-    if (in_square <= 1.15 * IN_SQUARE) break;
+    const double in_square = count / static_cast<double>(squaresOf(sample, bounds, side).occupied.count());
+    if (in_square <= CLOSE_ENOUGH * IN_SQUARE) break;
     side *= std::sqrt(IN_SQUARE / in_square);
   }
-  return side / std::sqrt(IN_SQUARE);
+  return side / std::sqrt(IN_SQUARE * static_cast<double>(points.cols()) / count);
 }
 
 /// The longer side [m] of the largest patch of squares that touch.
