@@ -1,5 +1,6 @@
 #include "pcl_fft_ground/core/ground/butterworth.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_fft_ground::core {
@@ -33,8 +34,10 @@ double Butterworth::response(double radius) const {
 }
 
 Spectrum filtered(Spectrum spectrum, const Butterworth& filter) {
-  const Eigen::ArrayXd x = squaredRatios(spectrum.half.rows(), spectrum.rows) / std::pow(filter.cutoff, 2);
-  const Eigen::ArrayXd y = squaredRatios(spectrum.cols(), spectrum.cols()) / std::pow(filter.cutoff, 2);
+  constexpr double LEAST_CUTOFF = 1e-150;  // has a square
+  const double squared_cutoff = std::pow(std::max(filter.cutoff, LEAST_CUTOFF), 2);
+  const Eigen::ArrayXd x = squaredRatios(spectrum.half.rows(), spectrum.rows) / squared_cutoff;
+  const Eigen::ArrayXd y = squaredRatios(spectrum.cols(), spectrum.cols()) / squared_cutoff;
   const double band_edge = squaredBandEdge(filter);
   for (Eigen::Index l = 0; l < spectrum.cols(); ++l)
     for (Eigen::Index k = 0; k < spectrum.half.rows(); ++k)

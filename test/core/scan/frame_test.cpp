@@ -110,7 +110,7 @@ TEST(Frame, OfTheGivenVerticalIsExactlyTheInput) {
   std::mt19937 random(1);
   const Points points = test::randomBox(1000, {0, 0, 0}, {4, 3, 5}, random);
   for (const double length : {1.0, 0.3, 7.0}) {
-    const Isometry3d frame = frameOf(points, {{0, 0, length}, UpEstimation::GIVEN, Yaw::NONE});
+    const Isometry3d frame = frameOf(points, {Vector3d(0, 0, length), UpEstimation::GIVEN, Yaw::NONE});
     EXPECT_EQ(frame.linear(), Matrix3d(Matrix3d::Identity()));
     EXPECT_EQ(frame.translation(), Vector3d(-summarise(points).mean));
   }
@@ -219,7 +219,7 @@ TEST(Frame, OfAVerticalWall) {
 
 TEST(Frame, OfNoPointsIsTheInput) {
   for (const UpEstimation up : ALL_UP_ESTIMATIONS)
-    EXPECT_EQ(frameOf(Points(3, 0), {{1, 0, 0}, up, Yaw::MIN_AREA_RECTANGLE}).matrix(),
+    EXPECT_EQ(frameOf(Points(3, 0), {Vector3d(1, 0, 0), up, Yaw::MIN_AREA_RECTANGLE}).matrix(),
               Eigen::Matrix4d(Eigen::Matrix4d::Identity()));
 }
 
