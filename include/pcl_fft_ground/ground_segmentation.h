@@ -102,8 +102,8 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   /// Why the last run could not segment its input; empty if it could.
   const std::string& getError() const { return error_; }
 
-  /// What the last run found remarkable, a sentence each with the value, what it means and the option that helps:
-  /// results that cannot be right, up that is doubtful (getUp()), far points. Usually none. The same went to
+  /// What the last run found remarkable: results that cannot be right, doubtful up (getUp()), far points. A
+  /// sentence each with the value, what it means and the option that helps; usually none. The same went to
   /// PCL_WARN.
   const std::vector<std::string>& getWarnings() const { return warnings_; }
 

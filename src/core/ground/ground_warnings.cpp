@@ -133,8 +133,8 @@ double shareWithoutGround(const Mask& observed, const Mask& ground, const GridGe
   for (Eigen::Index j = 0; j < cells.cols; ++j)
     for (Eigen::Index i = 0; i < cells.rows; ++i) {
       const auto cell = static_cast<Eigen::Index>(nearest(i, j));
-      const Eigen::Vector2d steps(static_cast<double>(cell % cells.rows - i),
-                                  static_cast<double>(cell / cells.rows - j));
+      const Eigen::Index row = cell % cells.rows, column = cell / cells.rows;
+      const Eigen::Vector2d steps(static_cast<double>(row - i), static_cast<double>(column - j));
       if (observed(i, j) && cells.cell_size * steps.norm() > distance) ++without;
     }
   return static_cast<double>(without) / static_cast<double>(std::max<Eigen::Index>(observed.count(), 1));

@@ -38,7 +38,7 @@ struct PrincipalAxis {
 /// Nothing where the points determine no plane.
 std::optional<PrincipalAxis> principalAxis(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  const Eigen::Vector3d variance = solver.eigenvalues();
+  const Eigen::Vector3d& variance = solver.eigenvalues();
   if (variance[1] <= 1e-9 * variance[2]) return std::nullopt;
   return PrincipalAxis{solver.eigenvectors().col(0), variance};
 }

@@ -187,21 +187,23 @@ Eigen::ArrayXXd heightsAboveGround(const Envelopes& envelopes) {
 /// Number of groups of at least so many flagged cells that touch by a side; the flags are used up.
 int groupsOf(Mask flags, std::size_t fewest) {
   int groups = 0;
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> group;
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> waiting;
   const auto visit = [&](Eigen::Index i, Eigen::Index j) {
     if (i < 0 || j < 0 || i >= flags.rows() || j >= flags.cols() || !flags(i, j)) return;
     flags(i, j) = false;
-    group.emplace_back(i, j);
+    waiting.emplace_back(i, j);
   };
   for (Eigen::Index j = 0; j < flags.cols(); ++j)
     for (Eigen::Index i = 0; i < flags.rows(); ++i) {
-      group.clear();
+      std::size_t size = 0;
       visit(i, j);
-      for (std::size_t n = 0; n < group.size(); ++n) {
-        const auto [k, l] = group[n];
+      while (!waiting.empty()) {
+        const auto [k, l] = waiting.back();
+        waiting.pop_back();
+        ++size;
         visit(k - 1, l), visit(k + 1, l), visit(k, l - 1), visit(k, l + 1);
       }
-      groups += group.size() >= fewest ? 1 : 0;
+      groups += size >= fewest ? 1 : 0;
     }
   return groups;
 }
@@ -246,13 +248,15 @@ struct Bundle {
 
 std::vector<Bundle> bundlesOf(const std::vector<CubePlace>& places, int divisions) {
   constexpr double STEPS = 65536;
-  std::vector<Bundle> bundles(static_cast<std::size_t>(6 * divisions * divisions));
+  const auto side = static_cast<std::size_t>(divisions);
+  std::vector<Bundle> bundles(6 * side * side);
   const auto cell = [&](float share) {
-    return std::clamp(static_cast<int>(share * static_cast<float>(divisions)), 0, divisions - 1);
+    return static_cast<std::size_t>(
+        std::clamp(static_cast<int>(share * static_cast<float>(divisions)), 0, divisions - 1));
   };
   for (const CubePlace& place : places) {
-    Bundle& bundle = bundles[static_cast<std::size_t>((place.face * divisions + cell(place.u)) * divisions +
-                                                      cell(place.v))];
+    const std::size_t column = static_cast<std::size_t>(place.face) * side + cell(place.u);
+    Bundle& bundle = bundles[column * side + cell(place.v)];
     const auto steps =
         static_cast<std::int64_t>(std::lround(STEPS * static_cast<double>(place.log_distance)));
     ++bundle.count;
