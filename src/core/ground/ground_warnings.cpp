@@ -16,13 +16,13 @@ constexpr double LEAST_FILLED = 0.1;         // of the bounding rectangle: 0.20 
 constexpr double CELLS_TO_OBJECT = 8;        // of the cells with which that is measured
 constexpr double PATCH = 1.25;               // of ground, in largest objects: 1.7 (a tile of less than two)
 constexpr double LARGE_ENOUGH = 1.6;         // a scan in which a larger patch would fit, in largest objects
-constexpr double LEAST_GROUND = 0.1;         // of the points: 0.14 (a room)
 constexpr double LEAST_GROUND_CELLS = 0.25;  // of the cells with points: 0.33 (a town with yards)
+constexpr double LITTLE_GROUND = 0.2, LITTLE_GROUND_CELLS = 0.45;  // of points and of cells, both: 0.29 and
+                                                                   // 0.33 (that town), 0.13 and 0.62 (a room)
 constexpr double WIDEST_SPREAD = 0.008;      // in largest objects: 0.0026 (a table, by a depth camera)
 constexpr double MOST_WITHOUT_GROUND = 0.2;  // of the cells with points: 0.04 (a street between houses)
-constexpr double MOST_HIDDEN = 0.045;  // of the points, in the upper half of a tolerance that noise does not
-                                       // explain: 0.036 (sparse airborne laser)
-constexpr double NOISE = 6;            // spreads of the ground beyond which it does not
+constexpr double MOST_HIDDEN = 0.05;         // of the points, without a size: 0.034 (sparse airborne laser)
+constexpr double NOISE = 6;                  // spreads of the ground that explain a height
 
 class Sentence {
  public:
@@ -202,8 +202,9 @@ void checkAmount(const Findings& found, const Mask& ground_cells, Warnings& warn
   const double of_cells = static_cast<double>((observed && ground_cells).count()) /
                           static_cast<double>(std::max<Eigen::Index>(observed.count(), 1));
   const double spread = found.ground.scale;
-  if (of_points >= LEAST_GROUND && of_cells >= LEAST_GROUND_CELLS && spread <= WIDEST_SPREAD * found.size)
-    return;
+  const bool is_little =
+      of_cells < LEAST_GROUND_CELLS || (of_points < LITTLE_GROUND && of_cells < LITTLE_GROUND_CELLS);
+  if (!is_little && spread <= WIDEST_SPREAD * found.size) return;
   warnings.push_back(
       Sentence() << "little or no ground was seen, as under vegetation or where it was removed: "
                  << 100 * of_points << " % of the points, in " << 100 * of_cells
@@ -220,9 +221,10 @@ void checkReach(const Findings& found, const Mask& ground_cells, Warnings& warni
                                   << found.size << " m: their ground is guessed; see --max-object-size");
 }
 
+/// Without a size half of the extent is taken, and on a large tile the tolerance grows with it.
 void checkTolerance(const Findings& found, Warnings& warnings) {
-  const double least = std::max(NOISE * found.ground.scale, 0.5 * found.ground.tolerance);
-  if (found.parameters.height_tolerance || found.ground.tolerance <= least) return;
+  const double least = NOISE * found.ground.scale, most = found.ground.most_tolerance;
+  if (found.parameters.height_tolerance || found.parameters.max_object_size || most <= least) return;
   Eigen::Index hidden = 0;
   for (Eigen::Index n = 0; n < found.ground_points.cols(); ++n) {
     const Eigen::Vector3d p = found.ground_points.col(n).cast<double>();
@@ -230,13 +232,12 @@ void checkTolerance(const Findings& found, Warnings& warnings) {
   }
   const double share = static_cast<double>(hidden) / static_cast<double>(found.points.cols());
   if (share <= MOST_HIDDEN) return;
-  const bool given = found.parameters.max_object_size.has_value();
-  warnings.push_back(Sentence() << 100 * share << " % of the points are more than " << least
-                                << " m above the ground and still ground, as what is lower than "
-                                << found.ground.tolerance << " m is, a share of the largest object"
-                                << (given ? "" : " (half of the scan's extent, as no size is given)")
-                                << ": objects may be lost; see --height-tolerance"
-                                << (given ? "" : " and --max-object-size"));
+  warnings.push_back(
+      Sentence() << 100 * share << " % of the points are more than " << least
+                 << " m above the ground and still ground, as what is lower than " << most
+                 << " m may be where half of the scan's extent is taken for the largest object, "
+                 << found.size
+                 << " m: low objects may be lost; see --max-object-size and --height-tolerance");
 }
 
 }  // namespace

@@ -120,11 +120,14 @@ TEST(GroundWarnings, TellThatMuchHasNoGroundNearby) {
 }
 
 TEST(GroundWarnings, TellATooLargeTolerance) {
-  // A kilometre of land, 15 % of it things 3.5 to 4.5 m high; half of the extent makes a tolerance of 4.9 m.
-  const Points tile = scanOf(1000, 1000, 150000, [](double x, double y, double chance) {
-    const bool thing = std::fmod(x, 40) < 16 && std::fmod(y, 40) < 15;
-    return 2 * std::sin(x / 150) + (thing ? 3.5 + chance : 0);
-  });
+  // A kilometre of land, 15 % of it things eight spreads of the ground high.
+  const Points tile = scanOf(
+      1000, 1000, 150000,
+      [](double x, double y, double) {
+        const bool thing = std::fmod(x, 40) < 16 && std::fmod(y, 40) < 15;
+        return 2 * std::sin(x / 150) + (thing ? 0.8 : 0);
+      },
+      0.1);
   expectOne(warningsOf(tile, RobustParameters()),
             {"% of the points", "half of the scan's extent", "--height-tolerance", "--max-object-size"});
   RobustParameters parameters;

@@ -19,7 +19,7 @@ namespace pcl_fft_ground::core {
  * - no ground: the ground found lies in patches no larger than the largest object
  * - little ground: few points, few cells with points or a wide spread, as under vegetation
  * - 20 % of the cells with points have no ground within the largest object
- * - a tolerance chosen from the size, so large that it hides what stands out of the ground
+ * - a tolerance so large, where no size is given, that it hides what stands out of the ground
  *
  * \param level_points points in the level frame of the ground
  * \param labels one per point
