@@ -20,8 +20,7 @@ namespace {
 constexpr double OTHER_SIDE = 0.5;      // by which down must be better than z before it is believed
 constexpr double OTHER_AXIS = 1.5;      // by which another axis must be
 constexpr double OTHER_SHEET = 0.5;     // or one across a smooth sheet, where there is none across z
-constexpr double SMOOTH = 0.4;          // ground of such a sheet
-constexpr double PASSABLE = 1;          // ground of a sheet across z, beside which no other axis is looked at
+constexpr double SMOOTH = 0.4;          // ground of a sheet
 constexpr double CLEAR = 0.5;           // evidence that needs no sensor to support it
 constexpr double DOUBT = 0.3;           // evidence against the direction taken that is worth a warning
 constexpr double CONTRADICTION = 0.7;   // against a direction that was given
@@ -240,13 +239,19 @@ UpDirection found(const std::vector<Axis>& axes, const std::optional<Sensor>& se
   return up;
 }
 
+double varianceAlong(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance) {
+  return direction.dot(covariance * direction);
+}
+
 /// Axes other than that near z.
 void lookElsewhere(const PointsView& points, const Points& sample, const PrincipalAxis& principal,
-                   std::vector<Axis>& axes) {
-  constexpr double SAME = 0.9;  // cosine of 26 degrees
+                   const Eigen::Matrix3d& covariance, std::vector<Axis>& axes) {
+  constexpr double SAME = 0.9;     // cosine of 26 degrees
+  constexpr double HIGHEST = 0.5;  // along the axis, in variances across: ground is broader than it is high
   for (const Eigen::Vector3d& near : {Eigen::Vector3d(Eigen::Vector3d::UnitY()),
                                       Eigen::Vector3d(Eigen::Vector3d::UnitX()), principal.axis}) {
     const Normal normal = normalNear(near, points, principal);
+    if (varianceAlong(normal.direction, covariance) > HIGHEST * principal.variance[1]) continue;
     const auto is_same = [&](const Axis& axis) { return std::abs(axis.up.dot(normal.direction)) > SAME; };
     if (std::any_of(axes.begin(), axes.end(), is_same)) continue;
     Axis axis = axisSeen(sample, near, normal);
@@ -269,16 +274,16 @@ void lookDown(const PointsView& points, const Points& sample, const PrincipalAxi
 }
 
 UpDirection searched(const PointsView& points, const PrincipalAxis& principal,
-                     const FrameParameters& parameters) {
+                     const Eigen::Matrix3d& covariance, const FrameParameters& parameters) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   const Points sample = sampleOf(points, ENOUGH);
   std::vector<Axis> axes;
   axes.push_back(axisSeen(sample, z, normalNear(z, points, principal)));
   heedPits(sample, axes.front());
-  const bool is_sheet = isSheet(axes.front(), PASSABLE);
+  const bool is_sheet = axes.front().is_trusted;
   const bool is_clear = is_sheet && axes.front().objects >= CLEAR;
   if (!is_clear) lookDown(points, sample, principal, axes);
-  if (!is_sheet) lookElsewhere(points, sample, principal, axes);
+  if (!is_sheet) lookElsewhere(points, sample, principal, covariance, axes);
   std::optional<Sensor> sensor = toldSensor(parameters);
   if (!sensor && !is_clear) sensor = shownSensor(points);
   if (sensor)
@@ -307,7 +312,7 @@ UpDirection estimateUp(const PointsView& points, const PointStatistics& statisti
   if (!principal && !(parameters.up_direction && points.cols() > 0)) return given(reference);
   if (parameters.up_estimation == UpEstimation::PRINCIPAL_AXIS)
     return given(principal ? turnedTowards(reference, principal->axis) : reference);
-  if (!parameters.up_direction) return searched(points, *principal, parameters);
+  if (!parameters.up_direction) return searched(points, *principal, statistics.covariance, parameters);
 
   const Normal normal = principal ? normalNear(reference, points, *principal) : Normal{reference, true};
   Axis seen = axisSeen(sampleOf(points, ENOUGH), reference, normal);

@@ -26,7 +26,25 @@ constexpr double SHEET = 0.1, APART = 0.5;
 
 constexpr double EMPTY = std::numeric_limits<double>::quiet_NaN();
 
-/// Points along a direction (third row) and across it.
+/// Leaves out points far above or below the others: they would stand for the cells in which they are.
+Points withoutOutliers(Points points) {
+  constexpr double TAIL = 0.01;  // share of the points at either end
+  constexpr float REACH = 0.5F;  // of the height of the others, from their ends
+  std::vector<float> heights(static_cast<std::size_t>(points.cols()));
+  Eigen::Map<Eigen::RowVectorXf>(heights.data(), points.cols()) = points.row(2);
+  const auto cut = static_cast<std::ptrdiff_t>(TAIL * static_cast<double>(heights.size()));
+  const auto low = heights.begin() + cut, high = heights.end() - 1 - cut;
+  std::nth_element(heights.begin(), low, heights.end());
+  if (high > low) std::nth_element(low + 1, high, heights.end());
+  const float reach = REACH * (*high - *low);
+  Eigen::Index count = 0;
+  for (Eigen::Index n = 0; n < points.cols(); ++n)
+    if (points(2, n) >= *low - reach && points(2, n) <= *high + reach) points.col(count++) = points.col(n);
+  points.conservativeResize(Eigen::NoChange, count);
+  return points;
+}
+
+/// Points along a direction (third row) and across it, outliers left out.
 Points alignedWith(const Points& points, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d other =
       std::abs(direction.x()) < 0.7 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
@@ -34,7 +52,7 @@ Points alignedWith(const Points& points, const Eigen::Vector3d& direction) {
   rotation.row(0) = direction.cross(other).normalized();
   rotation.row(1) = direction.cross(rotation.row(0).transpose());
   rotation.row(2) = direction;
-  return rotation.cast<float>() * points;
+  return withoutOutliers(rotation.cast<float>() * points);
 }
 
 /// Cells across a direction, each with the heights of its points.
