@@ -228,7 +228,8 @@ UpDirection found(const std::vector<Axis>& axes, const std::optional<Sensor>& se
   const Choice choice = bestOf(axes);
   UpDirection up = described(choice, sensor);
   const bool is_prior = choice.axis == &axes.front() && choice.side > 0;
-  const bool doubtful = choice.roughness().value_or(0) > ROUGH || hasRival(axes, choice);
+  const bool no_ground = !choice.axis->is_trusted && choice.roughness().value_or(0) > ROUGH;
+  const bool doubtful = no_ground || hasRival(axes, choice);
   if (is_prior && choice.evidence() <= -DOUBT)
     up.warnings.push_back("up is taken as z, but " + up.reasons.back() + ": " + how_to_tell);
   else if (is_prior && doubtful)
@@ -239,19 +240,15 @@ UpDirection found(const std::vector<Axis>& axes, const std::optional<Sensor>& se
   return up;
 }
 
-double varianceAlong(const Eigen::Vector3d& direction, const Eigen::Matrix3d& covariance) {
-  return direction.dot(covariance * direction);
-}
-
 /// Axes other than that near z.
 void lookElsewhere(const PointsView& points, const Points& sample, const PrincipalAxis& principal,
-                   const Eigen::Matrix3d& covariance, std::vector<Axis>& axes) {
+                   std::vector<Axis>& axes) {
   constexpr double SAME = 0.9;     // cosine of 26 degrees
-  constexpr double HIGHEST = 0.5;  // along the axis, in variances across: ground is broader than it is high
+  constexpr double HIGHEST = 0.7;  // ground is broader than it is high
   for (const Eigen::Vector3d& near : {Eigen::Vector3d(Eigen::Vector3d::UnitY()),
                                       Eigen::Vector3d(Eigen::Vector3d::UnitX()), principal.axis}) {
     const Normal normal = normalNear(near, points, principal);
-    if (varianceAlong(normal.direction, covariance) > HIGHEST * principal.variance[1]) continue;
+    if (heightToBreadth(sample, normal.direction) > HIGHEST) continue;
     const auto is_same = [&](const Axis& axis) { return std::abs(axis.up.dot(normal.direction)) > SAME; };
     if (std::any_of(axes.begin(), axes.end(), is_same)) continue;
     Axis axis = axisSeen(sample, near, normal);
@@ -274,7 +271,7 @@ void lookDown(const PointsView& points, const Points& sample, const PrincipalAxi
 }
 
 UpDirection searched(const PointsView& points, const PrincipalAxis& principal,
-                     const Eigen::Matrix3d& covariance, const FrameParameters& parameters) {
+                     const FrameParameters& parameters) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   const Points sample = sampleOf(points, ENOUGH);
   std::vector<Axis> axes;
@@ -283,7 +280,7 @@ UpDirection searched(const PointsView& points, const PrincipalAxis& principal,
   const bool is_sheet = axes.front().is_trusted;
   const bool is_clear = is_sheet && axes.front().objects >= CLEAR;
   if (!is_clear) lookDown(points, sample, principal, axes);
-  if (!is_sheet) lookElsewhere(points, sample, principal, covariance, axes);
+  if (!is_sheet) lookElsewhere(points, sample, principal, axes);
   std::optional<Sensor> sensor = toldSensor(parameters);
   if (!sensor && !is_clear) sensor = shownSensor(points);
   if (sensor)
@@ -312,7 +309,7 @@ UpDirection estimateUp(const PointsView& points, const PointStatistics& statisti
   if (!principal && !(parameters.up_direction && points.cols() > 0)) return given(reference);
   if (parameters.up_estimation == UpEstimation::PRINCIPAL_AXIS)
     return given(principal ? turnedTowards(reference, principal->axis) : reference);
-  if (!parameters.up_direction) return searched(points, *principal, statistics.covariance, parameters);
+  if (!parameters.up_direction) return searched(points, *principal, parameters);
 
   const Normal normal = principal ? normalNear(reference, points, *principal) : Normal{reference, true};
   Axis seen = axisSeen(sampleOf(points, ENOUGH), reference, normal);

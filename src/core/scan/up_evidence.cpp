@@ -28,8 +28,8 @@ constexpr double EMPTY = std::numeric_limits<double>::quiet_NaN();
 
 /// Leaves out points far above or below the others: they would stand for the cells in which they are.
 Points withoutOutliers(Points points) {
-  constexpr double TAIL = 0.01;  // share of the points at either end
-  constexpr float REACH = 0.5F;  // of the height of the others, from their ends
+  constexpr double TAIL = 0.03;  // share of the points at either end
+  constexpr float REACH = 1;     // of the height of the others, from their ends
   std::vector<float> heights(static_cast<std::size_t>(points.cols()));
   Eigen::Map<Eigen::RowVectorXf>(heights.data(), points.cols()) = points.row(2);
   const auto cut = static_cast<std::ptrdiff_t>(TAIL * static_cast<double>(heights.size()));
@@ -44,15 +44,19 @@ Points withoutOutliers(Points points) {
   return points;
 }
 
-/// Points along a direction (third row) and across it, outliers left out.
-Points alignedWith(const Points& points, const Eigen::Vector3d& direction) {
+Eigen::Matrix3f levelledTo(const Eigen::Vector3d& direction) {
   const Eigen::Vector3d other =
       std::abs(direction.x()) < 0.7 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   Eigen::Matrix3d rotation;
   rotation.row(0) = direction.cross(other).normalized();
   rotation.row(1) = direction.cross(rotation.row(0).transpose());
   rotation.row(2) = direction;
-  return withoutOutliers(rotation.cast<float>() * points);
+  return rotation.cast<float>();
+}
+
+/// Points along a direction (third row) and across it, outliers left out.
+Points alignedWith(const Points& points, const Eigen::Vector3d& direction) {
+  return withoutOutliers(levelledTo(direction) * points);
 }
 
 /// Cells across a direction, each with the heights of its points.
@@ -341,6 +345,20 @@ UpProfile profileAlong(const Points& points, const Eigen::Vector3d& direction) {
   profile.low = std::move(coarse.low);
   profile.high = std::move(coarse.high);
   return profile;
+}
+
+double heightToBreadth(const Points& points, const Eigen::Vector3d& direction) {
+  constexpr double TAIL = 0.1;
+  if (points.cols() == 0) return 0;
+  const Points aligned = levelledTo(direction) * points;
+  Eigen::Array3d spreads;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<double> values = finiteValues(aligned.row(axis).cast<double>().array());
+    const auto cut = static_cast<std::size_t>(TAIL * static_cast<double>(values.size()));
+    spreads[axis] = values[values.size() - 1 - cut] - values[cut];
+  }
+  const double breadth = std::min(spreads.x(), spreads.y());
+  return breadth > 0 ? spreads.z() / breadth : std::numeric_limits<double>::infinity();
 }
 
 int thingsStandingOut(const Points& points, const Eigen::Vector3d& up) {

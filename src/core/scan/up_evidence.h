@@ -27,6 +27,10 @@ struct UpProfile {
 /// \param points a sample of the scan is enough: some thousand points
 UpProfile profileAlong(const Points& points, const Eigen::Vector3d& direction);
 
+/// The spread of points along a direction over the smaller one across it, between their 10 and 90 %
+/// quantiles.
+double heightToBreadth(const Points& points, const Eigen::Vector3d& direction);
+
 /** How many separate things stand out on one side of the sheet that lies across a direction, as far as they
  * are about as high as the highest of them. Objects are several as a rule; a pit, seen upside down, is one.
  * \param up the side on which they stand out
