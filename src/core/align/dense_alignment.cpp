@@ -81,12 +81,15 @@ class DenseIcp {
     const std::vector<Correspondence> correspondences =
         findCorrespondences(shifted, FIRST_GATE * pair_.voxelSize());
     const double most = std::pow(largest * pair_.voxelSize(), 2);
-    double sum = 0;
+    double sum = 0, count = 0;
     for (const Correspondence& p : correspondences) {
-      const double distance = normals_.at(p.place, p.reference).dot(p.moving - p.reference);
+      const Eigen::Vector3d& normal = normals_.at(p.place, p.reference);
+      if (normal.isZero()) continue;
+      const double distance = normal.dot(p.moving - p.reference);
       sum += std::min(distance * distance, most);
+      ++count;
     }
-    return correspondences.empty() ? 0 : sum / static_cast<double>(correspondences.size());
+    return count > 0 ? sum / count : 0;
   }
 
  private:

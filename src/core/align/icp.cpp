@@ -64,16 +64,17 @@ IcpResult summariseIcp(const Eigen::Isometry3d& correction,
   if (correspondences.empty()) return result;
   result.centre = centreOf(correspondences);
   std::vector<MotionFit> parts;
-  double sum = 0;
-  double weights = 0;
+  double sum = 0, weights = 0;
   for (const Correspondence& p : correspondences) {
     const Eigen::Vector3d& normal = normals.at(p.place, p.reference);
+    if (normal.isZero()) continue;  // a point without a surface says nothing, least of all that it fits
     parts.resize(std::max(parts.size(), p.part + 1), MotionFit(result.centre));
     parts[p.part].addToPlane(p.moving, p.reference, normal, p.weight);
     const double distance = normal.dot(p.moving - p.reference);
     sum += p.weight * distance * distance;
     weights += p.weight;
   }
+  if (parts.empty()) return result;
   for (const MotionFit& part : parts) result.information += part.information();
   result.variance = sum / weights;
   result.spread = jackknifeCovariance(parts);
