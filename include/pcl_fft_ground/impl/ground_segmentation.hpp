@@ -100,8 +100,8 @@ void GroundSegmentation<PointT>::setUpDirection(const Eigen::Vector3d& up) {
 
 template <typename PointT>
 void GroundSegmentation<PointT>::setSensorPosition(const Eigen::Vector3d& position) {
-  requireParameter(position.allFinite(), "largest coordinate of the sensor position",
-                   position.cwiseAbs().maxCoeff(), "a finite number of metres");
+  requireParameter(position.allFinite(), "distance of the sensor position from the origin", position.norm(),
+                   "a finite number of metres");
   frame_parameters_.sensor_position = position;
 }
 
@@ -214,6 +214,8 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   for (const std::string& sentence : up_.warnings) warn(sentence);
   core::Labels labels = labelScan(scan);
   const std::vector<Eigen::Index>& far = scan.usable.far;
+  if (static_cast<Eigen::Index>(far.size()) > scan.usable.points.cols())
+    reportError("most coordinates are larger than can be computed with, beyond 1e18");
   for (const Eigen::Index n : far) far_points_.push_back(points.index(static_cast<std::size_t>(n)));
   if (!far.empty())
     warn("points too far from all others to belong to the scan, left out as objects: " +
@@ -223,7 +225,8 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   core::Labels scattered(points.size(), core::Label::NEITHER);
   for (std::size_t n = 0; n < labels.size(); ++n)
     scattered[static_cast<std::size_t>(scan.usable.column(static_cast<Eigen::Index>(n)))] = labels[n];
-  for (const Eigen::Index n : far) scattered[static_cast<std::size_t>(n)] = core::Label::OBJECT;
+  const core::Label far_label = error_.empty() ? core::Label::OBJECT : core::Label::GROUND;
+  for (const Eigen::Index n : far) scattered[static_cast<std::size_t>(n)] = far_label;
   return scattered;
 }
 
