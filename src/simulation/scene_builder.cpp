@@ -82,6 +82,21 @@ void addReefGround(const Eigen::AlignedBox2d& extent, Random& random, Terrain& t
   terrain.roughness = fractalRoughness(0.5, 0.01, random);
 }
 
+/// Sea floor that is nothing but relief, a metre of it: four standard deviations.
+void addBareGround(Random& random, Terrain& terrain) {
+  constexpr int kWaves = 48;
+  constexpr double kShortest = 3.0;
+  constexpr double kLongest = 30.0;
+  constexpr double kDeviation = 0.25;
+  double squares = 0.0;
+  for (int i = 0; i < kWaves; ++i) {
+    const double wavelength = kShortest * std::pow(kLongest / kShortest, random.uniform(0.0, 1.0));
+    terrain.waves.push_back(randomWave(wavelength, wavelength, random));
+    squares += 0.5 * wavelength * wavelength;
+  }
+  for (Wave& wave : terrain.waves) wave.amplitude *= kDeviation / std::sqrt(squares);
+}
+
 double meanHeight(const Terrain& terrain, const Eigen::AlignedBox2d& extent) {
   constexpr int kSteps = 64;
   double sum = 0.0;
@@ -114,6 +129,7 @@ double seenShare(const Scene& scene, const ScanGeometry& geometry, double faint,
 }  // namespace
 
 Eigen::Vector2d footprintOf(SceneKind kind) {
+  if (kind == SceneKind::BARE) return {20.0, 20.0};
   return kind == SceneKind::PIPES ? Eigen::Vector2d(6.0, 1.5) : Eigen::Vector2d(4.0, 4.0);
 }
 
@@ -129,6 +145,9 @@ Terrain makeTerrain(SceneKind kind, const Eigen::AlignedBox2d& extent, std::uint
       break;
     case SceneKind::REEF:
       addReefGround(extent, random, terrain);
+      break;
+    case SceneKind::BARE:
+      addBareGround(random, terrain);
       break;
   }
   terrain.level = -meanHeight(terrain, extent);

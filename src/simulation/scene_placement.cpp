@@ -144,6 +144,7 @@ PlacedObject placeObject(SceneKind kind, const Scene& scene, Random& random) {
     case SceneKind::REEF:
       return placeBoulder(scene, random);
     case SceneKind::WRECK:
+    case SceneKind::BARE:
       break;
   }
   return placeAmphora(scene, random);

@@ -58,6 +58,7 @@ Eigen::Vector3d randomDirection(Random& random) {
 }  // namespace
 
 Eigen::AlignedBox2d surveyExtent(SceneKind site) {
+  if (site == SceneKind::BARE) return {Eigen::Vector2d(-34.0, -22.0), Eigen::Vector2d(34.0, 22.0)};
   const Eigen::Vector2d half(8.0, site == SceneKind::PIPES ? 3.0 : 5.0);
   return {-half, half};
 }

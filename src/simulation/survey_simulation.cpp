@@ -15,10 +15,12 @@ namespace pcl_fft_ground::core {
 namespace {
 
 void validate(const SurveyParameters& p) {
-  const bool known = p.site == SceneKind::WRECK || p.site == SceneKind::PIPES;
-  require(known, "site", static_cast<double>(p.site), "WRECK or PIPES");
+  require(p.site != SceneKind::REEF && p.site <= SceneKind::BARE, "site", static_cast<double>(p.site),
+          "WRECK, PIPES or BARE");
   require(p.points >= 1 && p.points <= 100000000, "points", static_cast<double>(p.points), "1 to 100000000");
   requireWithin("object_share", p.object_share, 0.0, 0.8, "0 to 0.8");
+  require(p.site != SceneKind::BARE || p.object_share == 0.0, "object_share", p.object_share,
+          "0 on a bare site");
   requireWithin("noise", p.noise, 0.0, 0.1, "0 to 0.1 m");
   requireWithin("navigation_error", p.navigation_error, 0.0, 5.0, "0 to 5 m");
   requireWithin("heading_error", p.heading_error, 0.0, 45.0, "0 to 45 degrees");
@@ -122,6 +124,21 @@ class SurveySimulation::Site {
   std::vector<SurveyStation> plan_;
   std::vector<NavigationError> errors_;
 };
+
+SurveyParameters surveyParametersFor(SceneKind site) {
+  SurveyParameters parameters;
+  parameters.site = site;
+  if (site != SceneKind::BARE) return parameters;
+  constexpr double kSpacing = 0.25;  // [m]
+  parameters.points = static_cast<std::size_t>(footprintOf(site).prod() / (kSpacing * kSpacing));
+  parameters.object_share = 0.0;
+  parameters.noise = 0.02;
+  parameters.navigation_error = 1.0;
+  parameters.heading_error = 2.0;
+  parameters.altitude = 20.0;
+  parameters.baseline = 0.0;
+  return parameters;
+}
 
 SurveySimulation::SurveySimulation(const SurveyParameters& parameters) {
   validate(parameters);

@@ -15,7 +15,8 @@ namespace pcl_fft_ground::core {
 enum class SceneKind {
   WRECK,  ///< 4 m x 4 m: a mound on a slope with fractal roughness, amphorae half buried, alone or piled
   PIPES,  ///< 6 m x 1.5 m: flat to gently rolling, cylindrical pipe segments
-  REEF    ///< 4 m x 4 m: undulating (relief 0.1-0.3 m, wavelengths from 0.5 m up), boulders of 0.1-1 m
+  REEF,   ///< 4 m x 4 m: undulating (relief 0.1-0.3 m, wavelengths from 0.5 m up), boulders of 0.1-1 m
+  BARE    ///< 20 m x 20 m, in surveys only: relief of a metre, wavelengths 3-30 m, no objects
 };
 
 /** \brief What to simulate, and how it is seen.

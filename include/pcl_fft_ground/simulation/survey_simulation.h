@@ -14,21 +14,26 @@ namespace pcl_fft_ground::core {
 /** \brief What site to survey, and how well the vehicle knows where it is.
  *
  * A vehicle runs lawn-mower transects over the site and crosses them twice at the end (loop closures); of
- * each 4 m x 4 m (WRECK) or 6 m x 1.5 m (PIPES) it makes a sub-map that overlaps its neighbours by 30 to 60
- * %. Site, route and errors do not depend on \c points and \c drift.
+ * each 4 m x 4 m (WRECK), 6 m x 1.5 m (PIPES) or 20 m x 20 m (BARE) it makes a sub-map that overlaps its
+ * neighbours by 30 to 60 %. Site, route and errors do not depend on \c points and \c drift.
  */
 struct SurveyParameters {
-  SceneKind site = SceneKind::WRECK;  ///< WRECK, 16 m x 10 m, or PIPES, 16 m x 6 m with stones
-  std::uint32_t seed = 1;             ///< any value; equal seeds give equal surveys
-  std::size_t points = 600000;        ///< points of each sub-map, 1 to 100,000,000
-  double object_share = 0.3;          ///< share of object points amid the site, 0 to 0.8
-  double noise = 0.003;               ///< standard deviation of the range [m], 0 to 0.1
-  double navigation_error = 0.2;      ///< largest horizontal error of a sub-map's pose [m], 0 to 5
-  double heading_error = 3.0;         ///< largest error of its heading [degrees], 0 to 45
-  double drift = 0.0;     ///< by how far a sub-map is sheared from its start to its end [m], 0 to 1
-  double altitude = 3.0;  ///< of the laser above the ground [m], 2 to 20
-  double baseline = 0.5;  ///< distance of the camera behind the laser [m], 0 to 2
+  SceneKind site =
+      SceneKind::WRECK;           ///< WRECK, 16 m x 10 m, PIPES, 16 m x 6 m with stones, or BARE, 68 m x 44 m
+  std::uint32_t seed = 1;         ///< any value; equal seeds give equal surveys
+  std::size_t points = 600000;    ///< points of each sub-map, 1 to 100,000,000
+  double object_share = 0.3;      ///< share of object points amid the site, 0 to 0.8; 0 for BARE
+  double noise = 0.003;           ///< standard deviation of the range [m], 0 to 0.1
+  double navigation_error = 0.2;  ///< largest horizontal error of a sub-map's pose [m], 0 to 5
+  double heading_error = 3.0;     ///< largest error of its heading [degrees], 0 to 45
+  double drift = 0.0;             ///< by how far a sub-map is sheared from its start to its end [m], 0 to 1
+  double altitude = 3.0;          ///< of the laser above the ground [m], 2 to 20
+  double baseline = 0.5;          ///< distance of the camera behind the laser [m], 0 to 2
 };
+
+/// What suits a site: the members' defaults for those with objects, seen by a laser; for BARE a sonar's, 20 m
+/// above the ground, with 0.25 m between points, 2 cm of noise, and 1 m and 2 degrees of navigation error.
+PCL_FFT_GROUND_SIMULATION_EXPORT SurveyParameters surveyParametersFor(SceneKind site);
 
 /** \brief A sub-map: a scan in its own, nearly level frame, its origin amid the footprint, x along the track.
  *
