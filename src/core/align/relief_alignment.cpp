@@ -11,8 +11,9 @@
 
 #include "align/relief_icp.h"
 #include "align/relief_search.h"
-#include "pcl_fft_ground/core/scan/far_points.h"
+#include "align/scan_pair.h"
 #include "pcl_fft_ground/core/scan/point_statistics.h"
+#include "pcl_fft_ground/core/scan/prepare.h"
 #include "scan/parameter_check.h"
 
 namespace pcl_fft_ground::core {
@@ -37,25 +38,10 @@ constexpr double SAME = 0.5;               // poses that meet nearer than this a
 constexpr double LEAST_OVERLAP = 0.10;     // share of the smaller scan
 constexpr double LARGEST_RESIDUAL = 1.0;   // in units of what noise and roughness explain
 constexpr double LEAST_EVIDENCE = 3;       // a twentieth of a chance pose as good among all that were tried
-constexpr double SURER = 0.1;              // deviation of the turn, of what navigation allows
+constexpr double SURER = 0.15;             // deviation of the turn, of what navigation allows
 constexpr double LEAST_LEAD = 3;           // in evidence, over any rival whose surfaces fit, too
 constexpr double NEARLY_FITS = 1.15;       // residual of a rival, in the same units or over that of the best
 constexpr double LARGEST_DEVIATION = 0.4;  // predicted at the edge of the overlap [spacings]
-
-/// The points but those far from all others, after a transform.
-Points compacted(const PointsView& points, const Eigen::Isometry3d& transform) {
-  const std::vector<Eigen::Index> far = findFarPoints(points, summarise(points));
-  Points result(3, points.cols() - static_cast<Eigen::Index>(far.size()));
-  auto next = far.begin();
-  Eigen::Index count = 0;
-  for (Eigen::Index n = 0; n < points.cols(); ++n) {
-    if (next != far.end() && *next == n)
-      ++next;
-    else
-      result.col(count++) = (transform * points.col(n).cast<double>()).cast<float>();
-  }
-  return result;
-}
 
 void check(const Eigen::Isometry3d& guess, const ReliefParameters& p) {
   const auto positive = [](const char* name, double value) {
@@ -275,8 +261,8 @@ ReliefResult alignRelief(const PointsView& moving, const PointsView& reference,
   check(initial_guess, parameters);
   ReliefResult result;
   result.reference_from_moving = initial_guess;
-  const Points below = compacted(reference, Eigen::Isometry3d::Identity());
-  const Points above = compacted(moving, initial_guess);
+  const Points below = usablePoints(reference).points;
+  const Points above = transformed(initial_guess, usablePoints(moving).points);
   if (!(planSpacing(below) > 0 && planSpacing(above) > 0)) {
     result.refusal = "a scan has no extent";
     return result;

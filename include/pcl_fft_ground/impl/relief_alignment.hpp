@@ -1,0 +1,107 @@
+#pragma once
+
+#include <pcl/common/transforms.h>
+#include <pcl/exceptions.h>
+
+#include <cmath>
+#include <string>
+
+#include <pcl/impl/pcl_base.hpp>
+
+#include "pcl_fft_ground/impl/indexed_points.hpp"
+#include "pcl_fft_ground/impl/lazy_kd_tree.hpp"
+#include "pcl_fft_ground/relief_alignment.h"
+
+namespace pcl_fft_ground {
+namespace impl {
+
+inline void requireRelief(bool valid, const char* what, double value, const char* allowed) {
+  if (!valid)
+    throw pcl::PCLException(std::string("ReliefAlignment: ") + what + " is " + std::to_string(value) +
+                            ", must be " + allowed);
+}
+
+inline bool isPositive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
+}  // namespace impl
+
+template <typename PointSource, typename PointTarget>
+ReliefAlignment<PointSource, PointTarget>::ReliefAlignment() {
+  reg_name_ = "ReliefAlignment";
+  this->setSearchMethodTarget(typename Base::KdTreePtr(new impl::LazyKdTree<PointTarget>));
+}
+
+template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::setMaxShift(double shift) {
+  impl::requireRelief(impl::isPositive(shift), "largest shift [m]", shift, "a finite number above 0");
+  parameters_.gates.max_shift = shift;
+}
+
+template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::setMaxRise(double rise) {
+  impl::requireRelief(impl::isPositive(rise), "largest rise [m]", rise, "a finite number above 0");
+  max_rise_ = rise;
+}
+
+template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::setMaxTurn(double degrees) {
+  impl::requireRelief(degrees > 0 && degrees <= 180, "largest turn [degrees]", degrees, "above 0 to 180");
+  parameters_.gates.max_turn = degrees;
+}
+
+template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::setCellSize(double size) {
+  impl::requireRelief(size >= 0 && std::isfinite(size), "cell size [m]", size,
+                      "a finite number of 0 or more");
+  if (size > 0)
+    parameters_.cell_size = size;
+  else
+    parameters_.cell_size.reset();
+}
+
+template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::setUpDirection(const Eigen::Vector3d& up) {
+  const double length = up.stableNorm();
+  impl::requireRelief(up.allFinite() && length > 0, "length of the up direction", length,
+                      "a finite number above 0");
+  up_direction_ = up.stableNormalized();
+}
+
+template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::computeTransformation(PointCloudSource& output,
+                                                                      const Matrix4& guess) {
+  const Eigen::Isometry3d level(Eigen::Quaterniond::FromTwoVectors(up_direction_, Eigen::Vector3d::UnitZ()));
+  const auto levelled = [&](const core::Points& points) -> core::Points {
+    return level.linear().cast<float>() * points;
+  };
+  const core::Points source =
+      levelled(impl::IndexedPoints<PointSource>(*input_, indices_.get()).finitePoints());
+  const core::Points target = levelled(impl::IndexedPoints<PointTarget>(*target_, nullptr).finitePoints());
+  Eigen::Isometry3d target_from_source(guess.template cast<double>());
+  target_from_source.linear() =
+      Eigen::Quaterniond(target_from_source.linear()).normalized().toRotationMatrix();
+  core::ReliefParameters parameters = parameters_;
+  parameters.gates.max_rise = getMaxRise();
+  result_ = core::alignRelief(source, target, level * target_from_source * level.inverse(), parameters);
+
+  const auto unlevelled = [&](const Eigen::Isometry3d& pose) { return level.inverse() * pose * level; };
+  result_.reference_from_moving = unlevelled(result_.reference_from_moving);
+  result_.best.reference_from_moving = unlevelled(result_.best.reference_from_moving);
+  for (core::ReliefPose& rival : result_.rivals)
+    rival.reference_from_moving = unlevelled(rival.reference_from_moving);
+  Eigen::Matrix<double, 6, 6> input_from_level = Eigen::Matrix<double, 6, 6>::Zero();
+  input_from_level.topLeftCorner<3, 3>() = input_from_level.bottomRightCorner<3, 3>() =
+      level.linear().transpose();
+  result_.covariance = (input_from_level * result_.covariance * input_from_level.transpose()).eval();
+  converged_ = result_.accepted;
+  transformation_ = final_transformation_ =
+      result_.reference_from_moving.matrix().template cast<typename Matrix4::Scalar>();
+  pcl::transformPointCloud(*input_, *indices_, output, final_transformation_);
+}
+
+}  // namespace pcl_fft_ground
+
+#define PCL_INSTANTIATE_ReliefAlignment(T) \
+  template class PCL_FFT_GROUND_REGISTRATION_EXPORT pcl_fft_ground::ReliefAlignment<T, T>;
