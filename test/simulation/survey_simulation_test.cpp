@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -169,6 +170,71 @@ TEST_P(EverySite, DriftShearsASubmapByItsSizeAndNothingElse) {
   EXPECT_NEAR((moved.col(last) - moved.col(first)).norm(), 0.01, 5e-4);
 }
 
+/// The sea floor under a sub-map, without noise, by the true pose.
+double groundUnder(const SimulatedScan& scan, Eigen::Index n) {
+  const Eigen::Vector3d place(static_cast<double>(scan.points(0, n)), static_cast<double>(scan.points(1, n)),
+                              static_cast<double>(scan.ground_heights[static_cast<std::size_t>(n)]));
+  return (scan.world_from_scan * place).z();
+}
+
+class BareSurvey : public testing::TestWithParam<std::uint32_t> {
+ protected:
+  BareSurvey() : parameters_(surveyParametersFor(SceneKind::BARE)) {
+    parameters_.seed = GetParam();
+    survey_ = std::make_unique<SurveySimulation>(parameters_);
+  }
+
+  SurveyParameters parameters_;
+  std::unique_ptr<SurveySimulation> survey_;
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, BareSurvey, testing::Values(1U, 2U, 3U));
+
+TEST_P(BareSurvey, HasAMetreOfReliefAndNoObjects) {
+  ASSERT_EQ(survey_->size(), 21u);
+  double sum = 0, squares = 0, count = 0;
+  for (std::size_t i = 0; i < survey_->size(); i += 2) {
+    const SimulatedScan scan = survey_->submap(i).scan;
+    ASSERT_EQ(scan.points.cols(), 6400);
+    EXPECT_EQ(std::count(scan.labels.begin(), scan.labels.end(), 0), 6400);
+    for (Eigen::Index n = 0; n < scan.points.cols(); n += 10) {
+      const double height = groundUnder(scan, n);
+      sum += height;
+      squares += height * height;
+      ++count;
+    }
+  }
+  const double deviation = std::sqrt(squares / count - std::pow(sum / count, 2));
+  EXPECT_GT(deviation, 0.15);  // four of them are a metre, or so it is over a much larger site
+  EXPECT_LT(deviation, 0.35);
+}
+
+TEST_P(BareSurvey, NeighboursOverlapByThirtyToSixtyPercent) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t i = 0; i < survey_->size(); ++i) poses.push_back(survey_->submap(i).scan.world_from_scan);
+  std::size_t neighbours = 0;
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    if (std::abs(std::remainder(yawOf(poses[i]) - yawOf(poses[i + 1]), 2 * EIGEN_PI)) > 0.1) continue;
+    ++neighbours;
+    const double share = sharedArea(poses[i], poses[i + 1], {20, 20}) / 400;
+    EXPECT_GT(share, 0.3) << i;
+    EXPECT_LT(share, 0.6) << i;
+  }
+  EXPECT_GE(neighbours, 14u);
+}
+
+TEST_P(BareSurvey, NavigationIsWrongByAMetre) {
+  double largest = 0;
+  for (std::size_t i = 0; i < survey_->size(); ++i) {
+    const SimulatedSubmap submap = survey_->submap(i);
+    const Eigen::Vector3d shift =
+        submap.world_from_navigation.translation() - submap.scan.world_from_scan.translation();
+    EXPECT_LE(shift.head<2>().norm(), 1 + 1e-9);
+    EXPECT_LT(std::abs(yawOf(errorOf(submap))) / DEGREE, 2.1);
+    largest = std::max(largest, shift.head<2>().norm());
+  }
+  EXPECT_GT(largest, 0.6);
+}
+
 TEST(SurveySimulation, RefusesParametersOutOfRange) {
   const auto refused = [](const auto& change) {
     SurveyParameters parameters;
@@ -178,6 +244,7 @@ TEST(SurveySimulation, RefusesParametersOutOfRange) {
   refused([](auto& p) { p.site = SceneKind::REEF; });
   refused([](auto& p) { p.points = 0; });
   refused([](auto& p) { p.object_share = 0.9; });
+  refused([](auto& p) { p.site = SceneKind::BARE; });
   refused([](auto& p) { p.noise = -1; });
   refused([](auto& p) { p.navigation_error = std::numeric_limits<double>::quiet_NaN(); });
   refused([](auto& p) { p.heading_error = 90; });

@@ -2,16 +2,15 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include "align/relief_icp.h"
 #include "align/relief_search.h"
-#include "align/scan_pair.h"
+#include "pcl_fft_ground/core/scan/frame.h"
 #include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "pcl_fft_ground/core/scan/prepare.h"
 #include "scan/parameter_check.h"
@@ -26,6 +25,7 @@ constexpr double DEGREE = PI / 180;
 // The constants of relief alignment.
 constexpr double CELL = 2.4;               // side of the finest cells [spacings]: some six points
 constexpr double MOST_CELLS = 400;         // along a side of the finest grid; larger scans get larger cells
+constexpr double MOST_SEARCHED = 1000;     // the same with all that navigation allows around it
 constexpr double FEWEST_CELLS = 16;        // along the shorter side of the coarsest grid
 constexpr std::size_t MOST_SCALES = 3;     // each with cells twice as large
 constexpr std::size_t PEAKS = 5;           // of each scale from which ICP starts
@@ -169,7 +169,8 @@ class ReliefPair {
     const Bounds a = boundsOf(moving_), b = boundsOf(reference_);
     const double side =
         std::min((a.high - a.low).head<2>().maxCoeff(), (b.high - b.low).head<2>().maxCoeff());
-    return std::max(parameters_.cell_size.value_or(CELL * spacing_), side / MOST_CELLS);
+    const double searched = (side + 2 * bounds_.shift) / MOST_SEARCHED;
+    return std::max({parameters_.cell_size.value_or(CELL * spacing_), side / MOST_CELLS, searched});
   }
 
   /// By the scale that tells most.
@@ -262,7 +263,7 @@ ReliefResult alignRelief(const PointsView& moving, const PointsView& reference,
   ReliefResult result;
   result.reference_from_moving = initial_guess;
   const Points below = usablePoints(reference).points;
-  const Points above = transformed(initial_guess, usablePoints(moving).points);
+  const Points above = transformed(usablePoints(moving).points, initial_guess);
   if (!(planSpacing(below) > 0 && planSpacing(above) > 0)) {
     result.refusal = "a scan has no extent";
     return result;

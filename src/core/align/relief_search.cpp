@@ -15,6 +15,7 @@ constexpr double COARSE = 1.7;        // of the one whose result is taken away [
 constexpr double COVERED = 0.75;      // share of the wider one that must have heights
 constexpr double CLIPPED = 3;         // heights beyond so many robust deviations count as these
 constexpr double LEAST_SHARE = 0.12;  // of the smaller scan that must overlap
+constexpr double LEAST_PATCHES = 4;   // that the overlap must hold: a correlation of fewer says nothing
 constexpr double NEARLY_ALL = 0.95;   // of the points, for the lever arm
 constexpr double LEAST_VARIANCE = 1e-6;  // of the heights in the overlap, as a share of all: flat ground
 constexpr double BEST_CORRELATION = 0.9999;
@@ -71,7 +72,7 @@ Eigen::AlignedBox2d grown(Eigen::AlignedBox2d box, double by) {
   return box;
 }
 
-Eigen::ArrayXXd correlation(const Spectrum& reference, const Spectrum& moving) {
+Eigen::ArrayXXd crossCorrelation(const Spectrum& reference, const Spectrum& moving) {
   return inverseTransform({reference.rows, reference.half * moving.half.conjugate()});
 }
 
@@ -90,6 +91,46 @@ double power(const Spectrum& a) {
   for (Eigen::Index k = 0; k < a.half.rows(); ++k)
     sum += (k == 0 || 2 * k == a.rows ? 1 : 2) * a.half.row(k).abs2().sum();
   return sum;
+}
+
+/// Area in which the heights of both are alike [cells]: the sum of the product of their autocorrelations.
+double alikeArea(const Spectrum& a, const Spectrum& b) {
+  const auto cells = static_cast<double>(a.rows * a.cols());
+  return std::max(1.0, cells * sharedPower(a, b) / std::max(1e-300, power(a) * power(b)));
+}
+
+double leastVariance(const ReliefGrid& relief) {
+  return LEAST_VARIANCE * relief.heights.square().sum() / std::max(1.0, relief.mask.sum());
+}
+
+struct LeastVariances {
+  double reference, moving;
+};
+
+/// Sums over what both grids have in common, for each shift.
+struct OverlapSums {
+  OverlapSums(const ReliefSpectra& r, const ReliefSpectra& m)
+      : count(crossCorrelation(r.mask, m.mask)),
+        product(crossCorrelation(r.heights, m.heights)),
+        reference(crossCorrelation(r.heights, m.mask)),
+        moving(crossCorrelation(r.mask, m.heights)),
+        reference_squares(crossCorrelation(r.squares, m.mask)),
+        moving_squares(crossCorrelation(r.mask, m.squares)) {}
+
+  /// 0 where either is flat.
+  double correlation(Eigen::Index i, Eigen::Index j, const LeastVariances& least) const {
+    const double n = count(i, j), mean_r = reference(i, j) / n, mean_m = moving(i, j) / n;
+    const double var_r = reference_squares(i, j) / n - mean_r * mean_r;
+    const double var_m = moving_squares(i, j) / n - mean_m * mean_m;
+    if (!(var_r > least.reference && var_m > least.moving)) return 0;
+    return (product(i, j) / n - mean_r * mean_m) / std::sqrt(var_r * var_m);
+  }
+
+  Eigen::ArrayXXd count, product, reference, moving, reference_squares, moving_squares;
+};
+
+bool isBetter(const ReliefPeak& a, const ReliefPeak& b) {
+  return a.agreement.evidence > b.agreement.evidence;
 }
 
 double logLikelihood(double correlation, double independent) {
@@ -138,7 +179,7 @@ ReliefSearch::ReliefSearch(const Points& moving, const Points& reference, const 
   spectra_ = spectraOf(reference_);
 }
 
-ReliefSearch::Relief ReliefSearch::reliefOf(const Points& points, const Eigen::Isometry3d& correction) const {
+ReliefGrid ReliefSearch::reliefOf(const Points& points, const Eigen::Isometry3d& correction) const {
   Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(geometry_.rows, geometry_.cols), count = sum;
   const Eigen::Matrix3f turn = correction.linear().cast<float>();
   const Eigen::Vector3f shift = correction.translation().cast<float>();
@@ -158,7 +199,7 @@ ReliefSearch::Relief ReliefSearch::reliefOf(const Points& points, const Eigen::I
   sum /= count.max(1);
   static const std::vector<double> fine = gaussian(FINE), coarse = gaussian(COARSE);
   const Eigen::ArrayXXd covered = smoothed(mask, coarse), near = smoothed(mask, fine);
-  Relief relief;
+  ReliefGrid relief;
   relief.mask = (covered > COVERED && near > 0.05).cast<double>();
   relief.heights =
       relief.mask * (smoothed(sum, fine) / near.max(1e-9) - smoothed(sum, coarse) / covered.max(1e-9));
@@ -166,7 +207,7 @@ ReliefSearch::Relief ReliefSearch::reliefOf(const Points& points, const Eigen::I
   return relief;
 }
 
-ReliefSearch::Spectra ReliefSearch::spectraOf(const Relief& relief) const {
+ReliefSpectra ReliefSearch::spectraOf(const ReliefGrid& relief) const {
   const auto padded = [this](const auto& values) {
     Eigen::ArrayXXd grid = Eigen::ArrayXXd::Zero(padded_rows_, padded_cols_);
     grid.topLeftCorner(geometry_.rows, geometry_.cols) = values;
@@ -185,58 +226,47 @@ void ReliefSearch::searchHeading(double turn, std::vector<ReliefPeak>& found) {
   const Eigen::Isometry3d turned = Eigen::Translation3d(pivot) *
                                    Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
                                    Eigen::Translation3d(-pivot);
-  const Relief moving = reliefOf(moving_, turned);
-  const Spectra spectra = spectraOf(moving);
-  const auto cells = static_cast<double>(padded_rows_ * padded_cols_);
-  const double area = std::max(1.0, cells * sharedPower(spectra_.heights, spectra.heights) /
-                                        std::max(1e-300, power(spectra_.heights) * power(spectra.heights)));
+  const ReliefGrid moving = reliefOf(moving_, turned);
+  const ReliefSpectra spectra = spectraOf(moving);
+  const double area = alikeArea(spectra_.heights, spectra.heights);
   area_ += area / headings();
-  const Eigen::ArrayXXd count = correlation(spectra_.mask, spectra.mask);
-  const Eigen::ArrayXXd product = correlation(spectra_.heights, spectra.heights);
-  const Eigen::ArrayXXd sum_reference = correlation(spectra_.heights, spectra.mask);
-  const Eigen::ArrayXXd sum_moving = correlation(spectra_.mask, spectra.heights);
-  const Eigen::ArrayXXd squares_reference = correlation(spectra_.squares, spectra.mask);
-  const Eigen::ArrayXXd squares_moving = correlation(spectra_.mask, spectra.squares);
+  const OverlapSums sums(spectra_, spectra);
   const double least_count =
-      std::max(LEAST_SHARE * std::min(reference_.mask.sum(), moving.mask.sum()), 4 * area);
-  const auto least = [](const Relief& relief) {
-    return LEAST_VARIANCE * relief.heights.square().sum() / std::max(1.0, relief.mask.sum());
-  };
-  const double least_reference = least(reference_), least_moving = least(moving);
+      std::max(LEAST_SHARE * std::min(reference_.mask.sum(), moving.mask.sum()), LEAST_PATCHES * area);
+  const LeastVariances least{leastVariance(reference_), leastVariance(moving)};
   const Eigen::Index size = 2 * reach_ + 1;
-  Eigen::ArrayXXd likelihood = Eigen::ArrayXXd::Zero(size, size), correlations = likelihood;
+  Eigen::ArrayXXd correlations = Eigen::ArrayXXd::Zero(size, size), likelihoods = correlations;
   for (Eigen::Index b = 0; b < size; ++b)
     for (Eigen::Index a = 0; a < size; ++a) {
-      const Eigen::Index i = (a - reach_ + padded_rows_) % padded_rows_;
-      const Eigen::Index j = (b - reach_ + padded_cols_) % padded_cols_;
-      const double n = count(i, j);
-      if (n < least_count || (a - reach_) * (a - reach_) + (b - reach_) * (b - reach_) > reach_ * reach_)
-        continue;
-      const double mean_r = sum_reference(i, j) / n, mean_m = sum_moving(i, j) / n;
-      const double var_r = squares_reference(i, j) / n - mean_r * mean_r;
-      const double var_m = squares_moving(i, j) / n - mean_m * mean_m;
-      if (!(var_r > least_reference && var_m > least_moving)) continue;
-      correlations(a, b) = (product(i, j) / n - mean_r * mean_m) / std::sqrt(var_r * var_m);
-      likelihood(a, b) = logLikelihood(correlations(a, b), n / area);
+      const Eigen::Index x = a - reach_, y = b - reach_;
+      const Eigen::Index i = (x + padded_rows_) % padded_rows_, j = (y + padded_cols_) % padded_cols_;
+      if (x * x + y * y > reach_ * reach_ || sums.count(i, j) < least_count) continue;
+      correlations(a, b) = sums.correlation(i, j, least);
+      likelihoods(a, b) = logLikelihood(correlations(a, b), sums.count(i, j) / area);
     }
+  const std::vector<ReliefPeak> peaks = peaksOf(correlations, likelihoods, turned);
+  found.insert(found.end(), peaks.begin(), peaks.end());
+}
+
+/// The best of the places that are better than their neighbours, to parts of a cell.
+std::vector<ReliefPeak> ReliefSearch::peaksOf(const Eigen::ArrayXXd& correlations,
+                                              const Eigen::ArrayXXd& likelihoods,
+                                              const Eigen::Isometry3d& turned) const {
   std::vector<ReliefPeak> peaks;
-  for (Eigen::Index b = 1; b + 1 < size; ++b)
-    for (Eigen::Index a = 1; a + 1 < size; ++a) {
-      const double here = likelihood(a, b);
-      if (!(here > 0) || here < likelihood.block(a - 1, b - 1, 3, 3).maxCoeff()) continue;
+  for (Eigen::Index b = 1; b + 1 < likelihoods.cols(); ++b)
+    for (Eigen::Index a = 1; a + 1 < likelihoods.rows(); ++a) {
+      const double here = likelihoods(a, b);
+      if (!(here > 0) || here < likelihoods.block(a - 1, b - 1, 3, 3).maxCoeff()) continue;
       const double x =
-          static_cast<double>(a - reach_) + topOf(likelihood(a - 1, b), here, likelihood(a + 1, b));
+          static_cast<double>(a - reach_) + topOf(likelihoods(a - 1, b), here, likelihoods(a + 1, b));
       const double y =
-          static_cast<double>(b - reach_) + topOf(likelihood(a, b - 1), here, likelihood(a, b + 1));
+          static_cast<double>(b - reach_) + topOf(likelihoods(a, b - 1), here, likelihoods(a, b + 1));
       peaks.push_back({Eigen::Translation3d(x * geometry_.cell_size, y * geometry_.cell_size, 0) * turned,
                        {correlations(a, b), here}});
     }
-  const auto better = [](const ReliefPeak& a, const ReliefPeak& b) {
-    return a.agreement.evidence > b.agreement.evidence;
-  };
-  std::sort(peaks.begin(), peaks.end(), better);
+  std::stable_sort(peaks.begin(), peaks.end(), isBetter);
   peaks.resize(std::min(peaks.size(), PER_HEADING));
-  found.insert(found.end(), peaks.begin(), peaks.end());
+  return peaks;
 }
 
 std::vector<ReliefPeak> ReliefSearch::peaks(std::size_t count) {
@@ -244,9 +274,7 @@ std::vector<ReliefPeak> ReliefSearch::peaks(std::size_t count) {
   if (geometry_.rows == 0) return kept;
   area_ = 0;
   for (double n = -turns_; n <= turns_; ++n) searchHeading(n * step_, found);
-  std::stable_sort(found.begin(), found.end(), [](const ReliefPeak& a, const ReliefPeak& b) {
-    return a.agreement.evidence > b.agreement.evidence;
-  });
+  std::stable_sort(found.begin(), found.end(), isBetter);
   const double apart = std::max(1.5, std::sqrt(area_)) * geometry_.cell_size;
   const Eigen::Vector3d pivot(bounds_.pivot.x(), bounds_.pivot.y(), 0);
   for (const ReliefPeak& peak : found) {
@@ -265,10 +293,10 @@ std::vector<ReliefPeak> ReliefSearch::peaks(std::size_t count) {
 
 ReliefAgreement ReliefSearch::at(const Eigen::Isometry3d& correction) const {
   if (geometry_.rows == 0) return {};
-  const Relief moving = reliefOf(moving_, correction);
+  const ReliefGrid moving = reliefOf(moving_, correction);
   const Eigen::ArrayXXd both = reference_.mask * moving.mask;
   const double n = both.sum();
-  if (n < 4 * area_) return {0, -logTrials()};
+  if (n < LEAST_PATCHES * area_) return {0, -logTrials()};
   const double mean_r = (both * reference_.heights).sum() / n, mean_m = (both * moving.heights).sum() / n;
   const double var_r = (both * reference_.heights.square()).sum() / n - mean_r * mean_r;
   const double var_m = (both * moving.heights.square()).sum() / n - mean_m * mean_m;

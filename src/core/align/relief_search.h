@@ -30,6 +30,16 @@ struct ReliefPeak {
   ReliefAgreement agreement;
 };
 
+/// Band-passed heights, 0 where there are none, and where there are.
+struct ReliefGrid {
+  Eigen::ArrayXXd heights, mask;
+};
+
+/// Spectra of a ReliefGrid with room for the shifts.
+struct ReliefSpectra {
+  Spectrum mask, heights, squares;
+};
+
 /** Correlation of two scans' elevation grids over all shifts and headings within bounds.
  *
  * Masked normalised cross-correlation (Padfield 2012) of band-passed heights: of rippled, sloping or partly
@@ -49,17 +59,11 @@ class ReliefSearch {
   double headings() const { return 2 * turns_ + 1; }
 
  private:
-  /// Band-passed heights, 0 where there are none, and where there are.
-  struct Relief {
-    Eigen::ArrayXXd heights, mask;
-  };
-  struct Spectra {
-    Spectrum mask, heights, squares;
-  };
-
-  Relief reliefOf(const Points& points, const Eigen::Isometry3d& correction) const;
-  Spectra spectraOf(const Relief& relief) const;
+  ReliefGrid reliefOf(const Points& points, const Eigen::Isometry3d& correction) const;
+  ReliefSpectra spectraOf(const ReliefGrid& relief) const;
   void searchHeading(double turn, std::vector<ReliefPeak>& found);
+  std::vector<ReliefPeak> peaksOf(const Eigen::ArrayXXd& correlations, const Eigen::ArrayXXd& likelihoods,
+                                  const Eigen::Isometry3d& turned) const;
   double logTrials() const;
 
   const Points& moving_;
@@ -69,10 +73,9 @@ class ReliefSearch {
   Eigen::Index reach_ = 0;  // largest shift [cells]
   double step_ = 0;         // between headings [rad]
   double turns_ = 0;        // steps either way
-  Relief reference_;
-  Spectra spectra_;
+  ReliefGrid reference_;
+  ReliefSpectra spectra_;
   double area_ = 1;  // in which heights are alike [cells], mean of the headings searched
-  double least_count_ = 0;
 };
 
 }  // namespace pcl_fft_ground::core

@@ -16,6 +16,7 @@ constexpr double LEAST_SPREAD = 0.05;  // determinant of the points' covariance 
 constexpr double FARTHEST_MEAN = 0.7;  // of the points from the cell's centre: no extrapolation [cells]
 constexpr double LEAST_BLEND = 0.4;    // share of the four planes around a place that have to be there
 constexpr double PERFECT = 1e-4;       // least deviation of points, for perfect planes [cells]
+constexpr double MOST_CELLS = 4e6;     // of a surface: a thin loop of points covers little of its box
 constexpr double FEWEST = 12, MOST = 60;  // points of a plane
 constexpr double SLOPE_ERROR = 0.12;      // of the slope's size that noise may make of it
 
@@ -178,7 +179,9 @@ double ReliefSurface::squaredSlope() const {
 }
 
 ReliefSurface reliefSurface(const PointsView& points, double spacing) {
-  const auto cellFor = [&](double count) { return spacing * std::sqrt(count / 9); };
+  const Bounds bounds = boundsOf(points);
+  const double least = std::sqrt((bounds.high - bounds.low).head<2>().prod() / MOST_CELLS);
+  const auto cellFor = [&](double count) { return std::max(least, spacing * std::sqrt(count / 9)); };
   ReliefSurface fine(points, cellFor(FEWEST));
   const double noise = std::sqrt(fine.typicalVariance()), slope = std::sqrt(fine.squaredSlope());
   const double wanted = 2 * noise * std::sqrt(PI) / (SLOPE_ERROR * spacing * slope);

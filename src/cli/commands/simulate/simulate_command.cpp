@@ -21,7 +21,7 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr const char* help_before = R"(Usage: pcl_fft_ground simulate wreck|pipes|reef -o FILE [options]
-       pcl_fft_ground simulate survey wreck|pipes -o DIR [options]   (see `simulate survey --help`)
+       pcl_fft_ground simulate survey wreck|pipes|bare -o DIR [options]   (see `simulate survey --help`)
 
 Simulates one scan of the sea floor whose truth is known: what a structured-light laser 3 m above the bottom
 sees. wreck is 4 m x 4 m with amphorae, half buried, alone or piled, on a mound; pipes is 6 m x 1.5 m of flat to

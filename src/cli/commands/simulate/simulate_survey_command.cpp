@@ -24,11 +24,12 @@ namespace fs = std::filesystem;
 
 constexpr double HARD_DRIFT = 0.01;  // [m]
 
-constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground simulate survey wreck|pipes -o DIR [options]
+constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground simulate survey wreck|pipes|bare -o DIR [options]
 
 Simulates a survey whose truth is known. A vehicle runs transects to and fro over a site and crosses them twice at the
 end; wreck is 16 m x 10 m of amphorae on mounds in 32 sub-maps of 4 m x 4 m, pipes is 16 m x 6 m of pipes and stones
-in 26 sub-maps of 6 m x 1.5 m. Neighbours overlap by 30 to 60 %. DIR is made if need be and receives submap_00.pcd,
+in 26 sub-maps of 6 m x 1.5 m; bare is 68 m x 44 m of sea floor without objects, a metre of relief in waves of 3 to
+30 m, seen by a sonar in 21 sub-maps of 20 m x 20 m. Neighbours overlap by 30 to 60 %. DIR is made if need be and receives submap_00.pcd,
 submap_01.pcd ... (x y z [m] in the sub-map's own frame, label, segment; the VIEWPOINT is the pose by navigation, which
 is wrong by centimetres to --navigation-error and by up to --heading-error) and truth.csv, the true poses. Equal seeds
 give equal surveys.
@@ -63,36 +64,50 @@ po::options_description describeOptions(Request& request) {
   add("output,o", po::value(&request.output)->value_name("DIR"),
       "folder for the sub-maps; other files in it stay");
   add("seed", number(request.seed, "1", "N"), "equal seeds give equal surveys: 0 to 4294967295");
-  add("points", number(request.points, "600000", "N"), "points of each sub-map: 1 to 100000000");
+  add("points", number(request.points, "600000", "N"), "points of each sub-map: 1 to 100000000; bare: 6400");
   add("hard", po::bool_switch(&request.hard), "with 1 cm of drift inside each sub-map");
   add("object-share", number(p.object_share, "0.3", "SHARE"),
-      "share of object points amid the site: 0 to 0.8");
-  add("noise", number(p.noise, "0.003", "M"), "standard deviation of the range [m]: 0 to 0.1");
+      "share of object points amid the site: 0 to 0.8; bare: 0");
+  add("noise", number(p.noise, "0.003", "M"), "standard deviation of the range [m]: 0 to 0.1; bare: 0.02");
   add("navigation-error", number(p.navigation_error, "0.2", "M"),
-      "largest horizontal error of a pose by navigation [m]: 0 to 5");
+      "largest horizontal error of a pose by navigation [m]: 0 to 5; bare: 1");
   add("heading-error", number(p.heading_error, "3", "DEG"),
-      "largest error of its heading [degrees]: 0 to 45");
+      "largest error of its heading [degrees]: 0 to 45; bare: 2");
   add("quiet", po::bool_switch(&request.quiet), "print nothing");
   add("json", po::bool_switch(&request.json), "print the summary as JSON");
   add("help,h", po::bool_switch(&request.help), "show this text");
   return options;
 }
 
-void parse(const std::vector<std::string>& arguments, const po::options_description& options,
-           Request& request) {
+po::variables_map parse(const std::vector<std::string>& arguments, const po::options_description& options,
+                        Request& request) {
   po::options_description all;
   all.add(options).add_options()("site", po::value(&request.site));
   po::positional_options_description positional;
   positional.add("site", 1);
-  parseArguments("simulate survey", arguments, all, positional);
+  return parseArguments("simulate survey", arguments, all, positional);
 }
 
-void checkComplete(Request& request) {
-  if (request.site != "wreck" && request.site != "pipes")
+/// What was not asked for is as it suits a bare site.
+void setBareDefaults(const po::variables_map& values, Request& request) {
+  const core::SurveyParameters asked = request.parameters;
+  core::SurveyParameters& p = request.parameters;
+  p = core::surveyParametersFor(core::SceneKind::BARE);
+  const auto given = [&](const char* option) { return !values[option].defaulted(); };
+  if (given("object-share")) p.object_share = asked.object_share;
+  if (given("noise")) p.noise = asked.noise;
+  if (given("navigation-error")) p.navigation_error = asked.navigation_error;
+  if (given("heading-error")) p.heading_error = asked.heading_error;
+  if (!given("points")) request.points = static_cast<long long>(p.points);
+}
+
+void checkComplete(const po::variables_map& values, Request& request) {
+  if (request.site != "wreck" && request.site != "pipes" && request.site != "bare")
     throw UsageError(
         "simulate survey: " + (request.site.empty() ? "no site given" : "site '" + request.site + "'") +
-        ": allowed is wreck or pipes");
-  request.parameters.site = request.site == "pipes" ? core::SceneKind::PIPES : core::SceneKind::WRECK;
+        ": allowed is wreck, pipes or bare");
+  if (request.site == "pipes") request.parameters.site = core::SceneKind::PIPES;
+  if (request.site == "bare") setBareDefaults(values, request);
   request.parameters.seed = toCount<std::uint32_t>("seed", request.seed, 4294967295);
   request.parameters.points = toCount<std::size_t>("points", request.points, 100000000);
   request.parameters.drift = request.hard ? HARD_DRIFT : 0.0;
@@ -152,12 +167,12 @@ void printSummary(const Request& request, std::size_t submaps) {
 void runSimulateSurvey(const std::vector<std::string>& arguments) {
   Request request;
   const po::options_description options = describeOptions(request);
-  parse(arguments, options, request);
+  const po::variables_map values = parse(arguments, options, request);
   if (request.help) {
     std::cout << HELP_BEFORE << options << HELP_AFTER;
     return;
   }
-  checkComplete(request);
+  checkComplete(values, request);
   Progress progress(request.quiet || request.json);
   progress.begin("site", "building the site");
   const core::SurveySimulation survey = makeSurvey(request.parameters);
