@@ -7,6 +7,7 @@
 #include "align/icp.h"
 #include "align/segment_matching.h"
 #include "align/verdict.h"
+#include "pcl_fft_ground/core/align/relief_alignment.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -138,6 +139,27 @@ Attempt alignBySegments(const ScanPair& pair) {
   return {alignmentOf(pair, best)};
 }
 
+/// What the relief of the ground says, unless the objects contradict it.
+Alignment alignByRelief(const ScanPair& pair) {
+  ReliefParameters parameters;
+  parameters.gates = pair.parameters().gates;
+  const ReliefResult relief =
+      alignRelief(pair.movingScan().relief, pair.referenceScan().relief, pair.initialGuess(), parameters);
+  if (!relief.accepted) return refused(pair, relief.refusal);
+  const Agreement agreement =
+      AlignmentScore(pair).of(relief.reference_from_moving * pair.initialGuess().inverse());
+  if (agreement.points >= TELLING_OBJECTS && agreement.score < SHARE_OF_SCORE * pair.parameters().min_score)
+    return refused(pair, "the objects do not agree");
+  Alignment result;
+  result.reference_from_moving = relief.reference_from_moving;
+  result.accepted = true;
+  result.method = AlignmentMethod::RELIEF;
+  result.score = agreement.score;
+  result.overlap = relief.best.overlap;
+  result.covariance = relief.covariance;
+  return result;
+}
+
 }  // namespace
 
 SearchGates gatesOf(SearchMode mode) {
@@ -155,10 +177,17 @@ Alignment alignScans(const ScanSegments& moving, const ScanSegments& reference,
   const ScanPair pair(moving, reference, initial_guess, parameters);
   const Attempt attempt = alignBySegments(pair);
   Alignment result = attempt.alignment;
-  if (result.accepted || attempt.ambiguous || parameters.fallback == Fallback::NONE) return result;
-  const Alignment dense = alignDensely(pair, DensePoints::OVERLAP);
-  if (dense.accepted) return dense;
-  result.refusal += "; without segments: " + dense.refusal;
+  if (result.accepted || attempt.ambiguous) return result;
+  if (parameters.fallback == Fallback::DENSE) {
+    const Alignment dense = alignDensely(pair, DensePoints::OVERLAP);
+    if (dense.accepted) return dense;
+    result.refusal += "; without segments: " + dense.refusal;
+  }
+  if (parameters.relief == ReliefUse::AUTO) {
+    const Alignment relief = alignByRelief(pair);
+    if (relief.accepted) return relief;
+    result.refusal += "; by the relief: " + relief.refusal;
+  }
   return result;
 }
 

@@ -11,6 +11,11 @@
 
 namespace pcl_fft_ground::core {
 
+/// Object points seen by both scans that have to agree where the ground was aligned, too...
+constexpr std::size_t TELLING_OBJECTS = 50;
+/// ...and the share of min_score that does there: the ground has to fit, and nowhere else.
+constexpr double SHARE_OF_SCORE = 0.75;
+
 /// How well two scans agree on where objects are, in the places that both have seen.
 struct Agreement {
   double score = 0;        ///< share of these object points that have one of the other scan near, [0, 1]

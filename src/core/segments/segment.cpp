@@ -9,12 +9,14 @@
 #include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "scan/parameter_check.h"
+#include "scan/point_sample.h"
 #include "segments/voxel_set.h"
 
 namespace pcl_fft_ground::core {
 namespace {
 
-constexpr double COVERAGE_CELL = 2.5;  // side of a cell of the coverage [voxels]
+constexpr double COVERAGE_CELL = 2.5;   // side of a cell of the coverage [voxels]
+constexpr Eigen::Index RELIEF = 50000;  // points that are kept for the relief: 220 x 220
 constexpr double BORDER = 3;  // a segment that comes nearer to the border may go on beyond it [voxels]
 
 /// The mean of the points in each occupied voxel, in the order of the voxels' first points.
@@ -173,6 +175,7 @@ ScanSegments describeScan(const PointsView& points, const Labels& labels,
   for (std::size_t n = 0; n < labels.size(); ++n)
     if (labels[n] == Label::OBJECT) objects.push_back(static_cast<Eigen::Index>(n));
   ScanSegments scan = describeSurface(points, parameters);
+  scan.relief = sampleOf(points, RELIEF);
   scan.objects = ObjectMeans(scan).of(gathered(points, objects));
   clusterObjects(scan);
   return scan;
@@ -181,6 +184,7 @@ ScanSegments describeScan(const PointsView& points, const Labels& labels,
 ScanSegments describeScan(const PointsView& points, const std::vector<std::vector<Eigen::Index>>& clusters,
                           const SegmentParameters& parameters) {
   ScanSegments scan = describeSurface(points, parameters);
+  scan.relief = sampleOf(points, RELIEF);
   const ObjectMeans object_means(scan);
   std::vector<Eigen::Index> objects;
   std::vector<Points> means;
@@ -198,6 +202,7 @@ ScanSegments coarsened(const ScanSegments& scan, double voxel_size) {
   SegmentParameters parameters = scan.parameters;
   parameters.voxel_size = voxel_size;
   ScanSegments coarse = describeSurface(scan.surface, parameters);
+  coarse.relief = scan.relief;
   coarse.objects = ObjectMeans(coarse).of(scan.objects);
   clusterObjects(coarse);
   return coarse;

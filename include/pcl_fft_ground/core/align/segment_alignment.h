@@ -31,6 +31,12 @@ enum class Fallback {
   DENSE,  ///< ICP of all points where both scans have looked, accepted by the same gates
 };
 
+/// Whether the relief of the ground is asked where segments, and their fallback, do not decide.
+enum class ReliefUse {
+  AUTO,  ///< alignRelief(), by the same gates; the objects that both scans have seen must not contradict it
+  OFF,   ///< it is not
+};
+
 /// Limits of the correction of the initial guess.
 struct SearchGates {
   double max_shift = 0.6;   ///< horizontally [m], > 0
@@ -52,6 +58,7 @@ struct AlignmentParameters {
   SearchGates gates;                    ///< how far off the initial guess may be
   Matching matching = Matching::LOCAL;  ///< which version
   Fallback fallback = Fallback::DENSE;  ///< what follows where segments do not suffice
+  ReliefUse relief = ReliefUse::AUTO;   ///< what follows where these do not suffice either
   std::size_t min_matches = 3;          ///< N_seg: fewer matched segments give no alignment, >= 1
   /// Least share of object points that must agree, [0, 1]; three quarters of it for the dense fallback.
   double min_score = 0.80;
@@ -75,7 +82,7 @@ struct SegmentMatch {
 };
 
 /// How a transform was found.
-enum class AlignmentMethod { NONE, SEGMENTS, DENSE };
+enum class AlignmentMethod { NONE, SEGMENTS, DENSE, RELIEF };
 
 /** The result for a pair of scans. A refusal is a result, too: the transform then is the initial guess. */
 struct Alignment {

@@ -43,6 +43,7 @@ struct ScanSegments {
   std::vector<std::ptrdiff_t> sources;  ///< per segment, which of the clusters it was made of
   Points objects;                       ///< mean point of each voxel that object points occupy
   Points surface;                ///< mean point of each voxel that any points occupy: support of normals
+  Points relief;                 ///< the points, or a sample of them: support of alignRelief()
   ScanCoverage coverage;         ///< where the scan has looked
   SegmentParameters parameters;  ///< what led here
 };

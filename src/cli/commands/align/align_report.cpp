@@ -82,6 +82,8 @@ const char* nameOf(core::AlignmentMethod method) {
       return "segments";
     case core::AlignmentMethod::DENSE:
       return "dense";
+    case core::AlignmentMethod::RELIEF:
+      return "relief";
     case core::AlignmentMethod::NONE:
       break;
   }

@@ -57,6 +57,7 @@ void describe(AlignmentSettings& settings) {
   settings.described = {{"version", settings.version == Version::PAPER ? "paper" : "ours"},
                         {"matching", a.matching == core::Matching::PLAIN ? "plain" : "local"},
                         {"fallback", a.fallback == core::Fallback::NONE ? "none" : "dense"},
+                        {"relief", a.relief == core::ReliefUse::OFF ? "off" : "auto"},
                         {"max-shift", a.gates.max_shift},
                         {"max-rise", a.gates.max_rise},
                         {"max-turn", a.gates.max_turn},
@@ -91,6 +92,9 @@ po::options_description alignmentOptions(const char* fallback) {
       "matched by "
       "their centroids and sizes only");
   add("fallback", word(fallback), "where segments do not suffice: dense (ICP of the overlap, gated) or none");
+  add("relief", word("auto"),
+      "where these do not suffice either: auto (the relief of the ground is searched for all that navigation "
+      "allows) or off");
   add("min-matches", count(), "N_seg: fewer matched segments give no alignment (3)");
   add("min-score", number("SHARE"), "least share of object points that agree, up to 1 (0.8)");
   add("max-sigma", number("M"),
@@ -102,7 +106,7 @@ po::options_description alignmentOptions(const char* fallback) {
   add("paper", po::bool_switch(),
       "as published: segments from 2 cm on and of any number of voxels, plain matching, no tolerance above "
       "the ground, "
-      "no fallback");
+      "no fallback, no relief");
   return options;
 }
 
@@ -115,12 +119,14 @@ AlignmentSettings alignmentSettings(const po::variables_map& values) {
       isFirst(values, "matching", "local", "plain") ? core::Matching::LOCAL : core::Matching::PLAIN;
   alignment.fallback =
       isFirst(values, "fallback", "dense", "none") ? core::Fallback::DENSE : core::Fallback::NONE;
+  alignment.relief = isFirst(values, "relief", "auto", "off") ? core::ReliefUse::AUTO : core::ReliefUse::OFF;
   if (values["paper"].as<bool>()) {
     settings.version = Version::PAPER;
     settings.segments.min_extent = PAPER_EXTENT;
     settings.segments.min_voxels = 1;
     alignment.matching = core::Matching::PLAIN;
     alignment.fallback = core::Fallback::NONE;
+    alignment.relief = core::ReliefUse::OFF;
   }
   setNumber(values, "max-shift", 0, INFINITE, alignment.gates.max_shift);
   setNumber(values, "max-turn", 0, 180, alignment.gates.max_turn);

@@ -32,14 +32,16 @@ std::vector<PairTask> tasksOf(const SurveyFolder& survey, const SurveyRequest& r
 
 /// Aligns one pair from where navigation has it, and measures what came of it.
 core::PairResult alignPair(const PairTask& task, const SurveyFolder& survey, SurveyScans& scans,
-                           const AlignmentSettings& settings) {
+                           const SurveyRequest& request) {
   const core::SubmapPair& pair = task.pair.scans;
   const Eigen::Isometry3d guess = core::guessOf(pair, survey.scans);
   const SubmapDescription& moving = scans.describe(task.method, pair.moving);
   const SubmapDescription& reference = scans.describe(task.method, pair.reference);
   const std::string& error = moving.error.empty() ? reference.error : moving.error;
-  core::AlignmentParameters parameters = settings.alignment;
+  core::AlignmentParameters parameters = request.settings.alignment;
   if (segmenterOf(task.method) != task.method) parameters.fallback = core::Fallback::DENSE;
+  // Relief knows no segments: it is for the map, not for comparing methods by what their segments align.
+  if (task.method != request.mapping) parameters.relief = core::ReliefUse::OFF;
   const auto how = task.method == DENSE_ICP ? core::PairAlignment::DENSE : core::PairAlignment::SEGMENTS;
   core::PairResult result = error.empty() ? core::alignPair(task.pair, survey.scans, moving.segments,
                                                             reference.segments, guess, parameters, how)
@@ -67,7 +69,7 @@ std::vector<core::PairResult> alignPairs(const SurveyTask& task, SurveyRequest& 
       progress.begin("align", task.name + " [" + std::to_string(results.size() + 1) + "/" +
                                   std::to_string(pairs.size()) + "] " + names[pair.pair.scans.reference] +
                                   " and " + names[pair.pair.scans.moving] + ": " + pair.method);
-      record.add(alignPair(pair, survey, scans, request.settings));
+      record.add(alignPair(pair, survey, scans, request));
       known = &record.results().back();
     }
     results.push_back(*known);
