@@ -58,7 +58,7 @@ struct AlignmentParameters {
   SearchGates gates;                    ///< how far off the initial guess may be
   Matching matching = Matching::LOCAL;  ///< which version
   Fallback fallback = Fallback::DENSE;  ///< what follows where segments do not suffice
-  ReliefUse relief = ReliefUse::AUTO;   ///< what follows where these do not suffice either
+  ReliefUse relief = ReliefUse::OFF;    ///< what follows where these do not suffice either
   std::size_t min_matches = 3;          ///< N_seg: fewer matched segments give no alignment, >= 1
   /// Least share of object points that must agree, [0, 1]; three quarters of it for the dense fallback.
   double min_score = 0.80;
