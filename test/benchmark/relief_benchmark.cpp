@@ -16,12 +16,12 @@
 #include <utility>
 #include <vector>
 
-#include "commands/survey/survey_table.h"
 #include "io/cloud_file.h"
 #include "pcl_fft_ground/core/align/relief_alignment.h"
 #include "pcl_fft_ground/core/align/rigid_fit.h"
 #include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "pcl_fft_ground/core/survey/pairing.h"
+#include "pcl_fft_ground/core/survey/survey_tables.h"
 #include "pcl_fft_ground/simulation/survey_simulation.h"
 #include "simulation/simulation_random.h"
 
@@ -133,7 +133,7 @@ void run(const Trial& trial, Benchmark& benchmark, Row& row) {
 void print(const Row& row) {
   if (row.trials == 0) return;
   const auto at = [](const std::vector<double>& values, double share) {
-    return cli::quantileOf(values, share).value_or(0);
+    return core::quantileOf(values, share).value_or(0);
   };
   std::printf("%-34s %6zu %6zu %6zu %6zu %8.4g %8.4g %6.3f %6.3f %6.2f %7.3f\n", row.name.c_str(), row.trials,
               row.right, row.wrong, row.trials - row.right - row.wrong, at(row.errors, 0.5),

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "align/jackknife.h"
 #include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "scan/point_sample.h"
 
