@@ -17,6 +17,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/scanner.h"
+#include "pcl_fft_ground/core/scan/point_statistics.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -189,16 +190,6 @@ std::vector<double> coordinate(const pcl::PCLPointCloud2& table, const std::stri
   return fieldNumbers(table, *field);
 }
 
-/// The median of the finite values, rounded to whole metres, if it is large; else 0.
-double axisOrigin(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
-               values.end());
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return std::abs(*middle) > LARGE_COORDINATE ? std::round(*middle) : 0.0;
-}
-
 /// The table with the first x, y and z replaced by those of `points`; all other fields as they are.
 pcl::PCLPointCloud2 withFloatCoordinates(const pcl::PCLPointCloud2& table,
                                          const pcl::PointCloud<pcl::PointXYZ>& points) {
@@ -355,7 +346,8 @@ Cloud interpret(RawCloud raw, const ReadOptions& options) {
   nameCoordinates(raw.table);
   const Coordinates xyz{coordinate(raw.table, "x"), coordinate(raw.table, "y"), coordinate(raw.table, "z")};
   Cloud cloud;
-  cloud.origin = Eigen::Vector3d(axisOrigin(xyz[0]), axisOrigin(xyz[1]), axisOrigin(xyz[2]));
+  cloud.origin =
+      Eigen::Vector3d(core::wholeOrigin(xyz[0]), core::wholeOrigin(xyz[1]), core::wholeOrigin(xyz[2]));
   cloud.viewpoint = raw.viewpoint;
   cloud.viewpoint.position = raw.viewpoint.asTransform() * cloud.origin;
   cloud.pose_fault = raw.pose_fault;

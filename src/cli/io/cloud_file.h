@@ -14,9 +14,6 @@
 
 namespace pcl_fft_ground::cli {
 
-/// Coordinates beyond this are given relative to an origin: the floats around it are 1 mm apart [m].
-constexpr double LARGE_COORDINATE = 1e4;
-
 /// A cloud from a file, its coordinates relative to a whole-metre origin.
 ///
 /// A point of the file is points[i] + origin.

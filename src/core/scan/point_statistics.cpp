@@ -100,6 +100,15 @@ Bounds boundsOf(const PointsView& points) {
   return {low.cast<double>(), high.cast<double>()};
 }
 
+double wholeOrigin(std::vector<double> coordinates) {
+  const auto finite_end = std::remove_if(coordinates.begin(), coordinates.end(),
+                                         [](double value) { return !std::isfinite(value); });
+  if (finite_end == coordinates.begin()) return 0;
+  const auto middle = coordinates.begin() + (finite_end - coordinates.begin()) / 2;
+  std::nth_element(coordinates.begin(), middle, finite_end);
+  return std::abs(*middle) > LARGE_COORDINATE ? std::round(*middle) : 0;
+}
+
 PointStatistics summarise(const PointsView& points) {
   PointStatistics result;
   result.bounds = boundsOf(points);

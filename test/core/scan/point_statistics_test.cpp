@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "random_points.h"
@@ -119,6 +120,15 @@ TEST(PointStatistics, OfTheWidestPointsAreFinite) {
   EXPECT_TRUE(statistics.mean.allFinite());
   EXPECT_TRUE(statistics.covariance.allFinite());
   EXPECT_EQ(statistics.bounds.high.x(), static_cast<double>(3e38F));
+}
+
+TEST(WholeOrigin, IsTheRoundedMedianOfLargeCoordinatesOnly) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(wholeOrigin({}), 0);
+  EXPECT_EQ(wholeOrigin({nan, nan}), 0);
+  EXPECT_EQ(wholeOrigin({1, 2, 9999}), 0);
+  EXPECT_EQ(wholeOrigin({500000.4, nan, 500001.6, 500002.0}), 500002);
+  EXPECT_EQ(wholeOrigin({-4100000.4, -4100000.4, 1e30}), -4100000);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ Eigen::AlignedBox2d siteExtent(const SurveyFolder& survey, const core::SurveyPos
 /// What is subtracted from the coordinates of the site, so that floats hold them: whole metres.
 Eigen::Vector3d originOf(const SurveyFolder& survey, const core::SurveyPoses& poses) {
   const Eigen::Vector3d place = poses.global.front() * survey.scans.front().centroid;
-  return (place.array().abs() > LARGE_COORDINATE).select(place.array().round(), 0.0);
+  return (place.array().abs() > core::LARGE_COORDINATE).select(place.array().round(), 0.0);
 }
 
 /// All that is gathered while the sub-maps pass by.
