@@ -4,13 +4,18 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "pcl_fft_ground/fft_ground_segmentation.h"
+#include "pcl_fft_ground/object_cluster_extraction.h"
 #include "pcl_fft_ground/version.h"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
 #include "point_array.h"
@@ -38,22 +43,40 @@ struct Result {
   std::vector<pcl::PointIndices> clusters;
 };
 
+/// How object points are clustered: as the command does it.
 struct Clustering {
-  std::optional<double> leaf_size;
+  bool contact_only;
+  std::optional<double> leaf_size, min_object_size, max_object_size;  ///< [m]
   unsigned min_cluster_size;
 };
 
-std::vector<pcl::PointIndices> clustersOf(const pcl::PointCloud<Point>::Ptr& points,
-                                          const pcl::Indices& objects, double leaf_size,
-                                          unsigned min_cluster_size) {
-  VoxelClusterExtraction<Point> extraction;
+template <typename Extraction>
+std::vector<pcl::PointIndices> clustersBy(Extraction& extraction, const pcl::PointCloud<Point>::Ptr& points,
+                                          const pcl::Indices& objects, const Clustering& clustering) {
   extraction.setInputCloud(points);
   extraction.setIndices(pcl::IndicesConstPtr(new pcl::Indices(objects)));
-  extraction.setLeafSize(leaf_size);
-  extraction.setMinClusterSize(min_cluster_size);
+  extraction.setMinClusterSize(clustering.min_cluster_size);
   std::vector<pcl::PointIndices> clusters;
   extraction.extract(clusters);
   return clusters;
+}
+
+std::vector<pcl::PointIndices> clustersOf(const pcl::PointCloud<Point>::Ptr& points,
+                                          const pcl::Indices& objects, const Eigen::Vector3d& up,
+                                          double leaf_size, const Clustering& clustering) {
+  if (clustering.contact_only) {
+    VoxelClusterExtraction<Point> extraction;
+    extraction.setLeafSize(leaf_size);
+    return clustersBy(extraction, points, objects, clustering);
+  }
+  ObjectClusterExtraction<Point> extraction;
+  extraction.setLeafSize(leaf_size);
+  extraction.setUpDirection(up);
+  const double smallest = clustering.max_object_size
+                              ? core::MINIMUM_OBJECT_SHARE * *clustering.max_object_size
+                              : core::MINIMUM_OBJECT_LEAVES * leaf_size;
+  extraction.setMinimumObjectSize(clustering.min_object_size.value_or(smallest));
+  return clustersBy(extraction, points, objects, clustering);
 }
 
 /// Side of a cluster's voxel: that of an elevation cell, whether or not the method has cells itself.
@@ -128,21 +151,37 @@ py::dict reportOf(const std::string& method, const Filter& filter, const PointAr
   return report;
 }
 
+void requireLength(const char* name, const std::optional<double>& length) {
+  if (!length || (*length > 0 && std::isfinite(*length))) return;
+  throw std::invalid_argument(std::string(name) + " = " + std::to_string(*length) +
+                              ": must be a finite number of metres above 0");
+}
+
+bool isContactOnly(const std::optional<std::string>& clusters, const std::string& method) {
+  if (!clusters) return method == "fft-lowpass";
+  if (*clusters == "objects" || *clusters == "contact") return *clusters == "contact";
+  throw std::invalid_argument("clusters = '" + *clusters + "': must be 'objects' or 'contact'");
+}
+
 Segmentation segment(const py::array& xyz, std::optional<double> max_object_size, const std::string& method,
-                     std::optional<double> leaf_size, unsigned min_cluster_size, const py::kwargs& options) {
-  if (leaf_size && !(*leaf_size > 0 && std::isfinite(*leaf_size)))
-    throw std::invalid_argument("leaf_size = " + std::to_string(*leaf_size) +
-                                ": must be a finite number of metres above 0");
+                     const std::optional<std::string>& clusters, std::optional<double> leaf_size,
+                     std::optional<double> min_object_size, unsigned min_cluster_size,
+                     const std::optional<std::array<double, 3>>& sensor, const py::kwargs& options) {
+  requireLength("leaf_size", leaf_size);
+  requireLength("min_object_size", min_object_size);
+  const bool contact_only = isContactOnly(clusters, method);
   py::dict settings(options);
   if (max_object_size) settings["max_object_size"] = *max_object_size;
   const std::unique_ptr<Filter> filter = makeFilter(method, settings);
   for (const auto& [key, value] : settings)
     throw py::type_error("segment() has no parameter '" + key.cast<std::string>() + "'");
   const PointArray points = toPoints(xyz, "xyz");
+  if (sensor) filter->setSensorPosition(Eigen::Vector3d(sensor->data()) - points.origin);
   Result result;
   {
     const py::gil_scoped_release unlocked;
-    result = run(*filter, points, {leaf_size, min_cluster_size});
+    result =
+        run(*filter, points, {contact_only, leaf_size, min_object_size, max_object_size, min_cluster_size});
   }
   if (!filter->getError().empty()) throw std::runtime_error(filter->getError());
   Segmentation segmentation;
@@ -209,8 +248,11 @@ the level frame; frame_from_input brings points there, its z axis is up.)")
 xyz: N x 3 float32 or float64 [m], strided views too; what is not finite is neither ground nor object.
 max_object_size: size of the largest object [m]; half of the scan's smaller extent if None.
 method: 'fft' (robust), 'fft-lowpass' (as published), 'naive', 'planar', 'grid' or 'graph-cut'.
+clusters: 'objects' tells touching objects apart, 'contact' does not; objects if None (fft-lowpass: contact).
 leaf_size: side of the voxels that form segments [m]; the cell size if None.
+min_object_size: smallest object that is told apart from what it touches [m]; a share of the largest if None.
 min_cluster_size: points of the smallest segment.
+sensor: where the sensor stood, three numbers in the coordinates of xyz: on the upper side of the ground.
 
 Other keyword arguments are the command's options with _ in place of -: cell_size, height_tolerance,
 up_direction (three numbers), up_estimation, yaw, relative_max_object_size, filter_order, passband_ripple,

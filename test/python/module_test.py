@@ -102,6 +102,7 @@ class Segment(unittest.TestCase):
             ({"method": "magic"}, "method 'magic': allowed is one of"),
             ({"voxel_height": 0.1}, "voxel_height: the method 'fft' has no such option"),
             ({"leaf_size": 0.0}, "leaf_size"),
+            ({"clusters": "heaps"}, "clusters = 'heaps': must be"),
         ):
             with self.subTest(options=options), self.assertRaisesRegex(ValueError, named):
                 pcl_fft_ground.segment(xyz, **options)
@@ -134,7 +135,8 @@ class Segment(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             cloud = os.path.join(folder, "scan.xyz")
             np.savetxt(cloud, xyz, fmt="%.17g")
-            for options in ({}, {"method": "fft-lowpass", "height_tolerance": 0.02}, {"max_slope": 0.5}):
+            for options in ({}, {"method": "fft-lowpass", "height_tolerance": 0.02}, {"max_slope": 0.5},
+                            {"clusters": "contact"}):
                 words = [w for k, v in options.items() for w in ("--" + k.replace("_", "-"), str(v))]
                 out = os.path.join(folder, "out")
                 subprocess.run(
