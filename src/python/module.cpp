@@ -91,9 +91,9 @@ Result run(Filter& filter, const PointArray& xyz, const Clustering& clustering) 
   filter.setInputCloud(xyz.points);
   filter.segment(result.ground, result.objects);
   result.heights = filter.getHeightAboveGround();
-  result.clusters =
-      clustersOf(xyz.points, result.objects.indices, clustering.leaf_size.value_or(defaultLeafSize(filter)),
-                 clustering.min_cluster_size);
+  const Eigen::Vector3d up = filter.getFrame().linear().row(2).transpose();
+  result.clusters = clustersOf(xyz.points, result.objects.indices, up,
+                               clustering.leaf_size.value_or(defaultLeafSize(filter)), clustering);
   return result;
 }
 
