@@ -242,8 +242,9 @@ the level frame; frame_from_input brings points there, its z axis is up.)")
                     "dict: counts, what was chosen from the data and why, warnings");
 
   module.def("segment", &segment, py::arg("xyz"), py::arg("max_object_size") = py::none(), py::kw_only(),
-             py::arg("method") = "fft", py::arg("leaf_size") = py::none(), py::arg("min_cluster_size") = 10U,
-             R"(Tells ground from objects, and the objects from each other.
+             py::arg("method") = "fft", py::arg("clusters") = py::none(), py::arg("leaf_size") = py::none(),
+             py::arg("min_object_size") = py::none(), py::arg("min_cluster_size") = 10U,
+             py::arg("sensor") = py::none(), R"(Tells ground from objects, and the objects from each other.
 
 xyz: N x 3 float32 or float64 [m], strided views too; what is not finite is neither ground nor object.
 max_object_size: size of the largest object [m]; half of the scan's smaller extent if None.
