@@ -26,7 +26,7 @@ constexpr double LARGEST_DISTANCE = 1.5;   // from a plane that counts; more cou
 constexpr double TEST_SHIFT = 2.5;  // by which a wrong transform is off, to see what that costs [voxels]
 constexpr double TELLING_DISTANCE = 0.5;  // the same for the contrast: what one scan alone sees counts little
 constexpr double LEAST_CONTRAST = 2;      // factor by which it has to raise the mean squared distance
-constexpr double ROUGHLY = 0.5;  // share of the least score that makes a closer look worth while
+constexpr double ROUGHLY = 0.5;           // share of the least score that makes a closer look worth while
 
 /// ICP of the surfaces of two scans, ground included.
 class DenseIcp {

@@ -20,8 +20,9 @@ PCL_FFT_GROUND_CORE_EXPORT Bounds boundsOf(const PointsView& points);
 /// Coordinates beyond this are given relative to an origin: the floats around it are 1 mm apart [m].
 constexpr double LARGE_COORDINATE = 1e4;
 
-/** What to subtract from the coordinates of one axis before they become floats: the median of the finite ones,
- * which a few far outliers do not move, rounded to whole metres if it is beyond LARGE_COORDINATE; else 0.
+/** What to subtract from the coordinates of one axis before they become floats: the median of the finite
+ * ones, which a few far outliers do not move, rounded to whole metres if it is beyond LARGE_COORDINATE; else
+ * 0.
  */
 PCL_FFT_GROUND_CORE_EXPORT double wholeOrigin(std::vector<double> coordinates);
 
