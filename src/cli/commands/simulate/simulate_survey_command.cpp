@@ -29,10 +29,10 @@ constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground simulate survey wre
 Simulates a survey whose truth is known. A vehicle runs transects to and fro over a site and crosses them twice at the
 end; wreck is 16 m x 10 m of amphorae on mounds in 32 sub-maps of 4 m x 4 m, pipes is 16 m x 6 m of pipes and stones
 in 26 sub-maps of 6 m x 1.5 m; bare is 68 m x 44 m of sea floor without objects, a metre of relief in waves of 3 to
-30 m, seen by a sonar in 21 sub-maps of 20 m x 20 m. Neighbours overlap by 30 to 60 %. DIR is made if need be and receives submap_00.pcd,
-submap_01.pcd ... (x y z [m] in the sub-map's own frame, label, segment; the VIEWPOINT is the pose by navigation, which
-is wrong by centimetres to --navigation-error and by up to --heading-error) and truth.csv, the true poses. Equal seeds
-give equal surveys.
+30 m, seen by a sonar in 21 sub-maps of 20 m x 20 m. Neighbours overlap by 30 to 60 %. DIR is made if need be and
+receives submap_00.pcd, submap_01.pcd ... (x y z [m] in the sub-map's own frame, label, segment; the VIEWPOINT is the
+pose by navigation, which is wrong by centimetres to --navigation-error and by up to --heading-error) and truth.csv,
+the true poses. Equal seeds give equal surveys.
 
 )";
 
