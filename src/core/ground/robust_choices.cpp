@@ -81,22 +81,22 @@ RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bo
 }
 
 void chooseTolerances(const RobustParameters& parameters, Eigen::Index points, RobustGround& ground) {
-  constexpr double SCALES = 3, MORE_SCALES = 4, MOST_SCALES = 10, SPACINGS = 1.25;
-  constexpr double LEAST_DEPTH = 0.05, DEPTH_SCALES = 10, LEAST_SPREAD = 4e-4;
+  constexpr double SCALES = 3, MORE_SCALES = 4.25, MOST_SCALES = 10, SPACINGS = 1.25;
+  constexpr double DEPTH_SCALES = 10, LEAST_SPREAD = 4e-4;
   const double usual = USUAL_TOLERANCE * ground.max_object_size;
   // Nor is the surface known better than this where there is no noise at all.
   const double spread = std::max(ground.scale, LEAST_SPREAD * ground.max_object_size);
   const double noise = SCALES * spread, more_noise = MORE_SCALES * spread;
   ground.tolerance =
       choose(parameters.height_tolerance, std::max(noise, std::min(usual, more_noise)), "height_tolerance",
-             more_noise < usual ? "four times the spread of the ground points"
+             more_noise < usual ? "4.25 times the spread of the ground points"
              : noise < usual    ? "0.98 % of the largest object"
                                 : "three times the spread of the ground points",
              ground.choices);
   ground.most_tolerance =
       parameters.height_tolerance.value_or(std::max(noise, std::min(usual, MOST_SCALES * spread)));
   ground.slope_tolerance = SPACINGS * pointSpacing(ground.elevation, points);
-  ground.depth_tolerance = std::max(LEAST_DEPTH * ground.max_object_size, DEPTH_SCALES * ground.scale);
+  ground.depth_tolerance = std::max(USUAL_DEPTH * ground.max_object_size, DEPTH_SCALES * ground.scale);
 }
 
 }  // namespace pcl_fft_ground::core

@@ -9,6 +9,8 @@ namespace pcl_fft_ground::core {
 
 /// Ground usually lies closer to the surface than this share of the largest object.
 constexpr double USUAL_TOLERANCE = 0.0098;
+/// Nor is ground deeper below it than this share.
+constexpr double USUAL_DEPTH = 0.03;
 
 /// What is fitted, all values given or chosen.
 struct RobustPlan {

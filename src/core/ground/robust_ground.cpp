@@ -14,8 +14,6 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-constexpr double LEAST_DEPTH = 0.05;
-
 /// Coarse to fine from the lower envelope: the largest object first, then shorter wavelengths.
 std::vector<double> growFromBelow(RobustSurface& surface, double coarsest, double finest) {
   const double octaves = std::round(std::log2(coarsest / finest));
@@ -72,7 +70,7 @@ Mask completeGround(RobustSurface& surface, const RobustPlan& plan, const Elevat
     gained = gained || more;
     surface.refit(pointsIn(ground || gained, surface.points()));
   }
-  const Mask ground = cellsAtSurface(surface, plan.cells, -LEAST_DEPTH * size,
+  const Mask ground = cellsAtSurface(surface, plan.cells, -USUAL_DEPTH * size,
                                      std::max(surface.spread().centre + ABOVE * surface.spread().scale,
                                               LEAST_HEIGHT * size)) ||
                       gained;

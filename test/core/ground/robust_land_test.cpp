@@ -159,6 +159,28 @@ TEST(RobustLand, TheSurfaceSinksThroughShrubs) {
   EXPECT_NEAR(bias, 0, 0.006);  // a tenth of the height of the shrubs
 }
 
+/// Multipath under a parked car: dense, and up to ten times as deep as the tolerance.
+TEST(RobustLand, DensePointsBelowAnObjectDoNotTurnTheLandAround) {
+  std::mt19937 random(4);
+  Land land;
+  land.side = 4;
+  land.points = 60000;
+  land.object = [](double x, double y) {
+    return std::abs(x - 2) < 0.22 && std::abs(y - 2) < 0.09 ? 0.15 : 0.0;
+  };
+  Scan scan = scanOf(land);
+  constexpr Eigen::Index GHOSTS = 1000;
+  for (Eigen::Index n = 0; n < GHOSTS; ++n) {
+    scan.points.col(59 * n) = Eigen::Vector3d(uniform(random, 1.8, 2.2), uniform(random, 1.91, 2.09),
+                                              uniform(random, -0.15, -0.035))
+                                  .cast<float>();
+    scan.object_heights[static_cast<std::size_t>(59 * n)] = 0.15;
+  }
+  const Rates rates = ratesOf(scan, largestObject(1));
+  EXPECT_GE(rates.ground_kept, 0.999);
+  EXPECT_GE(rates.objects_found, 0.95);
+}
+
 /// Points 0.3 to 0.45 below the ground are noise, whatever the unit.
 TEST(RobustLand, LabelsDoNotDependOnTheUnit) {
   constexpr std::size_t DEEP = 20;
