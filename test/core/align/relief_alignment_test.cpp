@@ -6,9 +6,13 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "analytic_worlds.h"
 #include "pcl_fft_ground/core/align/rigid_fit.h"
+#include "pcl_fft_ground/core/align/segment_alignment.h"
+#include "pcl_fft_ground/core/segments/segment.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -138,6 +142,26 @@ TEST_P(ReliefAlignmentTest, OtherPlacesAreRefused) {
     EXPECT_FALSE(result.refusal.empty());
     EXPECT_TRUE(result.reference_from_moving.isApprox(poseAt(1, 1, turn)));
   }
+}
+
+/// alignScans() asks it of bare ground; the same points a third of which are objects are no relief.
+TEST(ReliefAlignment, IsAskedOfBareGroundOnly) {
+  const Seabed ground(1, 1);
+  const Points reference = scan(ground, REFERENCE, 11), moving = scan(ground, MOVING, 12);
+  AlignmentParameters parameters;
+  parameters.gates = navigation(2, 6).gates;
+  parameters.fallback = Fallback::NONE;
+  parameters.relief = ReliefUse::AUTO;
+  const Eigen::Isometry3d guess = poseAt(1, -1, 3) * TRUTH;
+  Labels labels(static_cast<std::size_t>(reference.cols()), Label::GROUND);
+  const ScanSegments bare = describeScan(reference, labels);
+  const Alignment of_bare_ground = alignScans(describeScan(moving, labels), bare, guess, parameters);
+  EXPECT_TRUE(of_bare_ground.accepted) << of_bare_ground.refusal;
+  EXPECT_EQ(of_bare_ground.method, AlignmentMethod::RELIEF);
+  for (std::size_t n = 0; n < labels.size(); n += 3) labels[n] = Label::OBJECT;
+  const Alignment of_objects = alignScans(describeScan(moving, labels), bare, guess, parameters);
+  EXPECT_FALSE(of_objects.accepted);
+  EXPECT_NE(of_objects.refusal.find("bare ground only"), std::string::npos) << of_objects.refusal;
 }
 
 TEST(ReliefAlignment, FlatGroundTellsNothing) {

@@ -33,7 +33,7 @@ enum class Fallback {
 
 /// Whether the relief of the ground is asked where segments, and their fallback, do not decide.
 enum class ReliefUse {
-  AUTO,  ///< alignRelief(), by the same gates; the objects that both scans have seen must not contradict it
+  AUTO,  ///< alignRelief(), by the same gates, of scans with objects on at most a tenth of their voxels
   OFF,   ///< it is not
 };
 

@@ -93,7 +93,8 @@ po::options_description alignmentOptions(const char* fallback) {
       "their centroids and sizes only");
   add("fallback", word(fallback), "where segments do not suffice: dense (ICP of the overlap, gated) or none");
   add("relief", word("auto"),
-      "where these do not suffice either: auto (the relief of the ground is searched for all that navigation "
+      "where these do not suffice either: auto (the relief of bare ground is searched for all that "
+      "navigation "
       "allows) or off");
   add("min-matches", count(), "N_seg: fewer matched segments give no alignment (3)");
   add("min-score", number("SHARE"), "least share of object points that agree, up to 1 (0.8)");
