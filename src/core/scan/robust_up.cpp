@@ -85,10 +85,12 @@ bool isTrusted(const Sheet& sheet, const Eigen::Vector3d& given) {
 }
 
 /// The thinner of the trusted sheets that the two starts lead to.
-std::optional<Sheet> flattestHalf(const Points& points, const Eigen::Vector3d& given) {
+template <typename SlabOf>
+std::optional<Sheet> thinnestSheet(const Points& points, const Eigen::Vector3d& given,
+                                   const SlabOf& slab_of) {
   std::optional<Sheet> best;
   for (const Eigen::Vector3d& start : {given, principalSheet(points, given).normal}) {
-    const Sheet sheet = concentrated(points, start, given, thinnestHalf);
+    const Sheet sheet = concentrated(points, start, given, slab_of);
     if (isTrusted(sheet, given) && (!best || sheet.thickness < best->thickness)) best = sheet;
   }
   return best;
@@ -123,11 +125,12 @@ std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointsView& points, co
   const Points sample = sampleOf(points, ENOUGH);
   if (sample.cols() < FEWEST_POINTS) return std::nullopt;
   const Points few = sampleOfSample(sample, points.cols(), ENOUGH_TO_START);
-  const std::optional<Sheet> rough = few.cols() < FEWEST_POINTS ? std::nullopt : flattestHalf(few, given);
-  if (!rough) return std::nullopt;
-  const Sheet sheet = concentrated(sample, rough->normal, given, thinnestHalf);
-  if (!isTrusted(sheet, given)) return std::nullopt;
-  return isNarrow(sheet) ? normalBelow(sheet, sample, given) : sheet.normal;
+  const std::optional<Sheet> rough =
+      few.cols() < FEWEST_POINTS ? std::nullopt : thinnestSheet(few, given, thinnestHalf);
+  const Sheet half = rough ? concentrated(sample, rough->normal, given, thinnestHalf) : Sheet{given};
+  if (isTrusted(half, given)) return isNarrow(half) ? normalBelow(half, sample, given) : half.normal;
+  const std::optional<Sheet> lowest = thinnestSheet(sample, given, lowestPart);
+  return lowest && isNarrow(*lowest) ? std::optional<Eigen::Vector3d>(lowest->normal) : std::nullopt;
 }
 
 }  // namespace pcl_fft_ground::core

@@ -17,10 +17,11 @@ namespace pcl_fft_ground::core {
  * A narrow strip (less than half as broad as long) can lie askew on objects that have more than half of the
  * points. As they stand on the ground, the same steps go on there with the lowest 30 % of the points; their
  * normal is taken where it leans by more than 5 degrees from the first one, they lie in a slab less than
- * 0.6 times as thick, and they are flatter than the first half: a pit beside level ground is not.
+ * 0.6 times as thick, and they are flatter than the first half: a pit beside level ground is not. Where no
+ * half is flat, as more than half of a narrow strip is objects, the lowest 30 % alone are looked at.
  *
  * \param given direction towards which the normal is turned, a unit vector
- * \return nothing where that half is no flat sheet (spread along the normal above a tenth of that along the
+ * \return nothing where neither is a flat sheet (spread along the normal above a tenth of that along the
  * next axis), or where the normal leans by more than 45 degrees from the given direction
  * \note O(n); about 4,000 points are looked at, chosen by their coordinates, not by their order
  */

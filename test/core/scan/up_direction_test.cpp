@@ -216,5 +216,28 @@ TEST_P(StripBesideAPit, DoesNotLeanIntoIt) {
   EXPECT_LT(degreesBetween(upOf(points).axis, Vector3d::UnitZ()), 4);
 }
 
+class CrowdedStrip : public testing::TestWithParam<std::tuple<double, double>> {};
+INSTANTIATE_TEST_SUITE_P(Strips, CrowdedStrip,
+                         testing::Combine(testing::Values(-33.0, -10.0, 0.0, 25.0),
+                                          testing::Values(0.3, 0.55, 0.7)));
+
+/// A strip of 6 m x 1.5 m, a share of whose points lies on round heaps that cover one side of it.
+TEST_P(CrowdedStrip, StandsOnItsGround) {
+  const auto [tilt, on_heaps] = GetParam();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> noise(0, 0.004);
+  Points points(3, 20000);
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    const double x = 6 * share(random), across = on_heaps * share(random);
+    const double height = share(random) < 0.9 ? 0.7 * std::sqrt(across) * (1 + 0.3 * std::sin(4 * x)) : 0.0;
+    const bool is_heap = share(random) < on_heaps;
+    const double y = is_heap ? 1.5 * across : 1.5 * share(random);
+    points.col(n) = Vector3d(x, y, noise(random) + (is_heap ? height : 0)).cast<float>();
+  }
+  const Matrix3d rotation = Eigen::AngleAxisd(tilt * M_PI / 180, Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_LT(degreesBetween(upOf(turned(points, rotation)).axis, rotation.col(2)), 4);
+}
+
 }  // namespace
 }  // namespace pcl_fft_ground::core
