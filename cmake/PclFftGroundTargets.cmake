@@ -50,11 +50,12 @@ function(pcl_fft_ground_library name)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 
   get_filename_component(header_dir "${ARG_EXPORT_HEADER}" DIRECTORY)
-  install(FILES "${generated}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/pcl_fft_ground/${header_dir}")
+  install(FILES "${generated}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/pcl_fft_ground/${header_dir}"
+    COMPONENT development)
   install(TARGETS ${target} EXPORT ${target}Targets
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT library)
   set_property(GLOBAL APPEND PROPERTY PCL_FFT_GROUND_COMPONENTS ${name})
 endfunction()
 

@@ -3,12 +3,12 @@
 #
 #   cmake/install_dependencies.sh PURPOSE...
 #
-#   library tool tests benchmarks fftw documentation style fresh-system
+#   library tool tests packages benchmarks fftw documentation style fresh-system
 #
 # Root is asked for (by sudo) only when something is missing. PCL_FFT_GROUND_SKIP_INSTALL=1 skips the whole step.
 set -eu
 
-purposes="library tool tests benchmarks fftw documentation style fresh-system"
+purposes="library tool tests packages benchmarks fftw documentation style fresh-system"
 
 fail() {
   echo "install_dependencies.sh: $*" >&2
@@ -19,6 +19,7 @@ fail() {
 commands_of() {
   case "$1" in
     library) echo "c++:g++ cc:gcc cmake:cmake make:make pkg-config:pkg-config" ;;
+    packages) echo "dpkg-shlibdeps:dpkg-dev file:file lintian:lintian" ;;
     documentation) echo "doxygen:doxygen" ;;
     style) echo "git:git clang-format:clang-format clang-tidy:clang-tidy" ;;
     fresh-system) echo "git:git debootstrap:debootstrap unshare:util-linux" ;;
@@ -33,7 +34,7 @@ packages_of() {
     tests) echo "libgtest-dev" ;;
     benchmarks) echo "libbenchmark-dev" ;;
     fftw) echo "libfftw3-dev" ;;
-    documentation | style | fresh-system) ;;
+    packages | documentation | style | fresh-system) ;;
     *) fail "unknown purpose '$1' (allowed: $purposes)" ;;
   esac
 }

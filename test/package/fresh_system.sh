@@ -2,10 +2,11 @@
 # Makes a bare Debian, copies the checkout's tracked files into it and runs a command of the README there, as somebody
 # does who has just installed that system. Prints the time, the packages and the result.
 #
-#   test/package/fresh_system.sh [--mirror URI] [--keep] debian:bookworm|debian:trixie [demo|tests]
+#   test/package/fresh_system.sh [--mirror URI] [--keep] debian:bookworm|debian:trixie [demo|tests|packages DIR]
 #
 #   demo            examples/run_demo.sh (the default)
 #   tests           test/run_tests.sh
+#   packages DIR    test/package/use_packages.sh: installs the .deb files of DIR, made for that system, and uses them
 #   --mirror URI    Debian's archive; without it that of this machine's apt configuration
 #   --keep          do not delete the system, and say where it is
 #
@@ -65,6 +66,7 @@ copy_checkout() {
   mkdir -p "$root/pcl_fft_ground"
   git -C "$checkout" ls-files -z | tar -c -C "$checkout" --null --ignore-failed-read -T - |
     tar -x --no-same-owner -C "$root/pcl_fft_ground" || stop $failed "the checkout's files could not be copied"
+  [ -z "$packages" ] || { mkdir "$root/packages" && cp "$packages"/*.deb "$root/packages/"; }
 }
 
 # run_inside COMMAND...: in name spaces of its own, so that nothing stays mounted or running whatever happens.
@@ -105,7 +107,8 @@ while [ $# -gt 0 ]; do
   shift
 done
 system=${arguments[0]:-} task=${arguments[1]:-demo}
-[ ${#arguments[@]} -le 2 ] || stop $not_understood "too many arguments: ${arguments[*]}"
+packages=${arguments[2]:-}
+[ ${#arguments[@]} -le 2 ] || [ "$task" = packages ] || stop $not_understood "too many arguments: ${arguments[*]}"
 case "$system" in
   debian:bookworm | debian:trixie) suite=${system#debian:} ;;
   *) stop $not_understood "unknown system '$system' (allowed: debian:bookworm debian:trixie)" ;;
@@ -113,7 +116,11 @@ esac
 case "$task" in
   demo) command=examples/run_demo.sh ;;
   tests) command=test/run_tests.sh ;;
-  *) stop $not_understood "unknown task '$task' (allowed: demo tests)" ;;
+  packages)
+    command=test/package/use_packages.sh
+    ls "$packages"/*.deb >/dev/null 2>&1 || stop $not_understood "no .deb files in '$packages'"
+    ;;
+  *) stop $not_understood "unknown task '$task' (allowed: demo tests packages)" ;;
 esac
 
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -138,7 +145,7 @@ base_packages=$(installed | wc -l)
 echo "Running $command in it"
 SECONDS=0
 status=0
-run_inside "/pcl_fft_ground/$command" || status=$?
+run_inside "/pcl_fft_ground/$command" ${packages:+/packages} || status=$?
 command_seconds=$SECONDS
 if [ $status -ne 0 ]; then
   report "FAILED (status $status)"
