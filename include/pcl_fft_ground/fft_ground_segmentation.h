@@ -29,6 +29,15 @@ enum class Estimator {
  * filter.setMaximumObjectSize(1.0);
  * filter.filter(*objects);
  * \endcode
+ *
+ * A cloud of any fields, all of which are kept:
+ *
+ * \code
+ * pcl_fft_ground::FFTGroundSegmentation<pcl::PCLPointCloud2> filter;
+ * filter.setInputCloud(message);  // a pcl::PCLPointCloud2::ConstPtr: pcl::io::loadPCDFile(), pcl_conversions
+ * filter.setMaximumObjectSize(1.0);
+ * filter.filter(objects);  // a pcl::PCLPointCloud2
+ * \endcode
  */
 template <typename PointT>
 class FFTGroundSegmentation : public GroundSegmentation<PointT> {

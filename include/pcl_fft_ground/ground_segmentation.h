@@ -14,6 +14,7 @@
 #include "pcl_fft_ground/core/scan/points.h"
 #include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/export.h"
+#include "pcl_fft_ground/impl/indexed_points.hpp"
 
 namespace pcl_fft_ground {
 
@@ -30,13 +31,17 @@ using core::Yaw;
  * object and does not influence the rest. The input is never modified, and equal input gives equal output bit
  * for bit.
  *
+ * `PointT` is a point type with x, y and z, or `pcl::PCLPointCloud2`: a cloud of any fields, all of which are
+ * kept, as ROS nodes and PCL's command-line tools have them. Its x, y and z may be float64, and then keep
+ * their detail at any distance from the origin (so do those of a point type).
+ *
  * Where the data does not let the method work, nothing throws: PCL_ERROR and getError() say why, and every
  * finite point counts as ground. Setters throw `pcl::PCLException` on values out of range.
  */
 template <typename PointT>
 class GroundSegmentation : public pcl::FilterIndices<PointT> {
  public:
-  using PointCloud = typename pcl::Filter<PointT>::PointCloud;
+  using PointCloud = typename impl::CloudView<PointT>::Cloud;
   using Ptr = pcl::shared_ptr<GroundSegmentation<PointT>>;
   using ConstPtr = pcl::shared_ptr<const GroundSegmentation<PointT>>;
 
@@ -153,6 +158,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
  private:
   core::Label keptLabel() const { return negative_ ? core::Label::GROUND : core::Label::OBJECT; }
   core::Labels computeLabels();
+  core::PreparedScan prepare(const impl::IndexedPoints<PointT>& points);
   core::Labels labelScan(const core::PreparedScan& scan);
   void reportError(const std::string& sentence);
   void copyPoints(const pcl::Indices& indices, PointCloud& output) const;
@@ -162,6 +168,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   bool up_estimation_is_given_ = false;
   std::optional<double> height_tolerance_;
   UpDirection up_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  ///< of the points that the last run worked on
   Eigen::Isometry3d frame_from_input_ = Eigen::Isometry3d::Identity();
   pcl::Indices far_points_;
   std::string error_;

@@ -7,12 +7,11 @@
 namespace pcl_fft_ground::test {
 
 /// The input with x, y, z of every point that is listed but not kept replaced: what keep_organized owes.
-template <typename PointT>
-pcl::PointCloud<PointT> organisedResult(const pcl::PointCloud<PointT>& input, const pcl::Indices& removed,
-                                        float value) {
-  pcl::PointCloud<PointT> expected = input;
+template <typename CloudT>
+CloudT organisedResult(const CloudT& input, const pcl::Indices& removed, float value) {
+  CloudT expected = input;
   for (const pcl::index_t i : removed) {
-    PointT& p = expected[static_cast<std::size_t>(i)];
+    auto& p = expected[static_cast<std::size_t>(i)];
     p.x = p.y = p.z = value;
   }
   if (!std::isfinite(value)) expected.is_dense = false;
@@ -20,11 +19,11 @@ pcl::PointCloud<PointT> organisedResult(const pcl::PointCloud<PointT>& input, co
 }
 
 /// sameClouds(), but any NaN equals any other.
-template <typename PointT>
-bool samePlaces(const pcl::PointCloud<PointT>& a, const pcl::PointCloud<PointT>& b) {
-  const auto same = [](float p, float q) { return p == q || (std::isnan(p) && std::isnan(q)); };
+template <typename CloudT>
+bool samePlaces(const CloudT& a, const CloudT& b) {
+  const auto same = [](auto p, auto q) { return p == q || (std::isnan(p) && std::isnan(q)); };
   return a.size() == b.size() && a.width == b.width && a.height == b.height && a.is_dense == b.is_dense &&
-         std::equal(a.begin(), a.end(), b.begin(), [&](const PointT& p, const PointT& q) {
+         std::equal(a.begin(), a.end(), b.begin(), [&](const auto& p, const auto& q) {
            return same(p.x, q.x) && same(p.y, q.y) && same(p.z, q.z) && sameFields(p, q, false);
          });
 }
@@ -40,7 +39,7 @@ TYPED_TEST_P(FilterContract, Line18ResultIsOneRowUnlessComplete) {
 
 TYPED_TEST_P(FilterContract, Line18AsManyPointsAsTheInputInAnotherOrder) {
   // Ground alone, as many indices as points: PCL's copyPointCloud would copy the input as it stands.
-  using Cloud = pcl::PointCloud<typename TypeParam::Point>;
+  using Cloud = typename TestFixture::CloudT;
   auto segmenter = this->recording(this->scan_);
   segmenter.setNegative(true);
   const Cloud ground = this->filterCloud(segmenter);

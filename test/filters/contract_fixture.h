@@ -30,8 +30,8 @@ struct FFTTraits {
   }
 
   /// True where rounding alone may decide about the label: at the tolerance, which grows with the slope.
-  template <typename PointT>
-  static bool isAtSurface(const FFTGroundSegmentation<PointT>& segmenter, const PointT& p) {
+  template <typename FilteredT, typename PointT>
+  static bool isAtSurface(const FFTGroundSegmentation<FilteredT>& segmenter, const PointT& p) {
     const double height = segmenter.getGroundSurface().heightAbove(Eigen::Vector3d(p.x, p.y, p.z));
     const double slack = segmenter.getEstimator() == Estimator::LOW_PASS ? 1e-6 : 1e-4;
     return std::abs(height - segmenter.getHeightTolerance()) < slack;
@@ -45,10 +45,12 @@ template <>
 struct SegmenterTraits<LowPassSegmentation> : FFTTraits {};
 
 /// A segmenter on a point type: the parameter of the suite.
-template <template <typename> class SegmenterT, typename PointT>
+/// \tparam FilteredT what the segmenter is instantiated for, if that is not the type of the points
+template <template <typename> class SegmenterT, typename PointT, typename FilteredT = PointT>
 struct Subject {
   using Point = PointT;
-  using Segmenter = SegmenterT<PointT>;
+  using Filtered = FilteredT;
+  using Segmenter = SegmenterT<FilteredT>;
   template <typename OtherPointT>
   using SegmenterOf = SegmenterT<OtherPointT>;
   using Traits = SegmenterTraits<SegmenterT>;
@@ -92,7 +94,7 @@ template <typename SubjectT>
 class FilterContract : public testing::Test {
  protected:
   using PointT = typename SubjectT::Point;
-  using CloudT = pcl::PointCloud<PointT>;
+  using CloudT = CloudOf<PointT>;
   using SegmenterT = typename SubjectT::Segmenter;
   using Traits = typename SubjectT::Traits;
 
@@ -122,7 +124,8 @@ class FilterContract : public testing::Test {
   static std::vector<int> labels(SegmenterT& segmenter) {
     pcl::PointIndices ground, objects;
     segmenter.segment(ground, objects);
-    std::vector<int> labels(segmenter.getInputCloud()->size(), 2);
+    const auto cloud = segmenter.getInputCloud();
+    std::vector<int> labels(cloud->width * cloud->height, 2);
     for (const pcl::index_t i : ground.indices) labels[static_cast<std::size_t>(i)] = 0;
     for (const pcl::index_t i : objects.indices) labels[static_cast<std::size_t>(i)] = 1;
     return labels;

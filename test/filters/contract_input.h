@@ -14,7 +14,9 @@ TYPED_TEST_P(FilterContract, Line01WithoutInputNothingHappens) {
   const OutputCapture capture;
   EXPECT_NO_THROW(this->segmenter_.filter(indices));
   EXPECT_NO_THROW(this->segmenter_.filter(output));
-  EXPECT_NE(capture.standard_error.text().find("[initCompute] No input set."), std::string::npos);
+  constexpr bool PCL_IS_SILENT = std::is_same_v<typename TypeParam::Filtered, pcl::PCLPointCloud2>;
+  EXPECT_NE(capture.standard_error.text().find("[initCompute] No input set.") == std::string::npos,
+            !PCL_IS_SILENT);
   EXPECT_EQ(indices, (pcl::Indices{7, 8}));
   EXPECT_TRUE(sameClouds(output, *this->scan_));
   EXPECT_NO_THROW(this->segmenter_.segment(ground, objects));
@@ -46,10 +48,12 @@ TYPED_TEST_P(FilterContract, Line03MutableIndicesAreAliasedOthersCopied) {
   const pcl::Indices kept = this->filterIndices(segmenter);
   EXPECT_EQ(joined(kept, *segmenter.getRemovedIndices()), allIndices(2000));
 
-  const pcl::IndicesPtr later_changed(new pcl::Indices(allIndices(2000)));
-  segmenter.setIndices(pcl::IndicesConstPtr(later_changed));
-  later_changed->clear();
-  EXPECT_EQ(this->filterIndices(segmenter), kept);
+  if constexpr (!std::is_same_v<typename TypeParam::Filtered, pcl::PCLPointCloud2>) {  // has no such overload
+    const pcl::IndicesPtr later_changed(new pcl::Indices(allIndices(2000)));
+    segmenter.setIndices(pcl::IndicesConstPtr(later_changed));
+    later_changed->clear();
+    EXPECT_EQ(this->filterIndices(segmenter), kept);
+  }
 
   const pcl::PointIndices::Ptr point_indices(new pcl::PointIndices);
   point_indices->indices = allIndices(2000);

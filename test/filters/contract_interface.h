@@ -13,7 +13,7 @@
 namespace pcl_fft_ground::test {
 
 TYPED_TEST_P(FilterContract, Line25UsableThroughTheBasePointers) {
-  using Point = typename TypeParam::Point;
+  using Point = typename TypeParam::Filtered;
   using Segmenter = typename TypeParam::Segmenter;
   static_assert(std::is_base_of_v<pcl::FilterIndices<Point>, Segmenter>);
   static_assert(std::is_base_of_v<GroundSegmentation<Point>, Segmenter>);
@@ -27,12 +27,12 @@ TYPED_TEST_P(FilterContract, Line25UsableThroughTheBasePointers) {
   TypeParam::Traits::setUp(*segmenter);
   const typename pcl::Filter<Point>::Ptr filter = segmenter;
   filter->setInputCloud(this->scan_);
-  pcl::PointCloud<Point> output;
+  typename TestFixture::CloudT output;
   filter->filter(output);
   EXPECT_TRUE(sameClouds(output, objects));
   EXPECT_EQ(filter->getRemovedIndices()->size(), this->scan_->size() - objects.size());
 
-  const typename pcl::FilterIndices<Point>::Ptr indices_filter = segmenter;
+  const pcl::shared_ptr<pcl::FilterIndices<Point>> indices_filter = segmenter;
   pcl::Indices indices;
   indices_filter->filter(indices);
   EXPECT_EQ(indices, this->filterIndices(reference));
@@ -177,18 +177,24 @@ TYPED_TEST_P(FilterContract, Line29NothingOnStandardOutputErrorsOnStandardError)
   EXPECT_EQ(capture.standard_output.text(), "");
 }
 
+/// The points as those of the type that PCL brings its search tree compiled for.
+template <typename CloudT>
+pcl::PointCloud<pcl::PointXYZ>::Ptr placesOf(const CloudT& cloud) {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr places(new pcl::PointCloud<pcl::PointXYZ>);
+  for (const auto& p : cloud)
+    places->push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+  places->is_dense = cloud.is_dense;
+  return places;
+}
+
 TYPED_TEST_P(FilterContract, Line31ResultCanBeClusteredByPcl) {
   auto segmenter = this->recording(this->spoilt_);
   for (const bool negative : {false, true}) {
     segmenter.setNegative(negative);
     const auto result = this->filterCloud(segmenter);
     const pcl::IndicesPtr indices(new pcl::Indices(this->filterIndices(segmenter)));
-    const pcl::PointCloud<pcl::PointXYZ>::Ptr places(new pcl::PointCloud<pcl::PointXYZ>);
-    pcl::copyPointCloud(result, *places);  // PCL brings its search tree compiled for this type
-    const auto clusters = euclideanClusters(places, nullptr, 0.1, 20);
-    const pcl::PointCloud<pcl::PointXYZ>::Ptr all_places(new pcl::PointCloud<pcl::PointXYZ>);
-    pcl::copyPointCloud(*this->spoilt_, *all_places);
-    const auto clusters_by_indices = euclideanClusters(all_places, indices, 0.1, 20);
+    const auto clusters = euclideanClusters(placesOf(result), nullptr, 0.1, 20);
+    const auto clusters_by_indices = euclideanClusters(placesOf(*this->spoilt_), indices, 0.1, 20);
     ASSERT_FALSE(clusters.empty());
     ASSERT_EQ(clusters_by_indices.size(), clusters.size());
     for (std::size_t n = 0; n < clusters.size(); ++n)

@@ -43,15 +43,23 @@ bool sameFields(const PointT& a, const PointT& b, bool coordinates = true) {
   });
 }
 
-/// True if two clouds agree in everything: points, shape, header, sensor pose, is_dense.
+/// The cloud that tests of a point type work on; specialised where that is none of PCL's.
 template <typename PointT>
-bool sameClouds(const pcl::PointCloud<PointT>& a, const pcl::PointCloud<PointT>& b) {
+struct CloudFor {
+  using Type = pcl::PointCloud<PointT>;
+};
+template <typename PointT>
+using CloudOf = typename CloudFor<PointT>::Type;
+
+/// True if two clouds agree in everything: points, shape, header, sensor pose, is_dense.
+template <typename CloudT>
+bool sameClouds(const CloudT& a, const CloudT& b) {
   return a.size() == b.size() && a.width == b.width && a.height == b.height && a.is_dense == b.is_dense &&
          a.header.frame_id == b.header.frame_id && a.header.stamp == b.header.stamp &&
          a.header.seq == b.header.seq && a.sensor_origin_ == b.sensor_origin_ &&
          a.sensor_orientation_.coeffs() == b.sensor_orientation_.coeffs() &&
          std::equal(a.begin(), a.end(), b.begin(),
-                    [](const PointT& p, const PointT& q) { return sameFields(p, q); });
+                    [](const auto& p, const auto& q) { return sameFields(p, q); });
 }
 
 template <typename PointT>
@@ -61,17 +69,17 @@ bool isFinitePoint(const PointT& p) {
 
 /// An unorganised cloud of these points; the other fields, the header and the sensor's pose are all set.
 template <typename PointT>
-typename pcl::PointCloud<PointT>::Ptr cloudOf(const Eigen::Matrix3Xf& points) {
-  typename pcl::PointCloud<PointT>::Ptr cloud(new pcl::PointCloud<PointT>);
+typename CloudOf<PointT>::Ptr cloudOf(const Eigen::Matrix3Xf& points) {
+  typename CloudOf<PointT>::Ptr cloud(new CloudOf<PointT>);
   cloud->resize(static_cast<std::size_t>(points.cols()));
   for (std::size_t n = 0; n < cloud->size(); ++n) {
-    PointT& p = (*cloud)[n];
+    auto& p = (*cloud)[n];
     setOtherFields(p, static_cast<std::uint8_t>(n % 251));
     p.x = points(0, static_cast<Eigen::Index>(n));
     p.y = points(1, static_cast<Eigen::Index>(n));
     p.z = points(2, static_cast<Eigen::Index>(n));
   }
-  cloud->is_dense = std::all_of(cloud->begin(), cloud->end(), isFinitePoint<PointT>);
+  cloud->is_dense = std::all_of(cloud->begin(), cloud->end(), [](const auto& p) { return isFinitePoint(p); });
   cloud->header.frame_id = "sonar";
   cloud->header.stamp = 1234567;
   cloud->header.seq = 42;
@@ -82,7 +90,7 @@ typename pcl::PointCloud<PointT>::Ptr cloudOf(const Eigen::Matrix3Xf& points) {
 
 /// The scene as an organised cloud.
 template <typename PointT>
-typename pcl::PointCloud<PointT>::Ptr cloudOf(const Scene& scene) {
+typename CloudOf<PointT>::Ptr cloudOf(const Scene& scene) {
   const auto cloud = cloudOf<PointT>(scene.points);
   cloud->width = scene.width;
   cloud->height = scene.height;
@@ -90,8 +98,8 @@ typename pcl::PointCloud<PointT>::Ptr cloudOf(const Scene& scene) {
 }
 
 /// Makes one coordinate of every 37th point non-finite, in turn NaN, +infinity and -infinity.
-template <typename PointT>
-void spoilPoints(pcl::PointCloud<PointT>& cloud) {
+template <typename CloudT>
+void spoilPoints(CloudT& cloud) {
   constexpr float INFINITE = std::numeric_limits<float>::infinity();
   for (std::size_t n = 5; n < cloud.size(); n += 37) {
     const float value = n % 3 == 0 ? NOT_A_NUMBER : n % 3 == 1 ? INFINITE : -INFINITE;

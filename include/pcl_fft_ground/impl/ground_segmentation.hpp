@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include <pcl/common/impl/io.hpp>
@@ -52,6 +53,7 @@ GroundSegmentation<PointT>::GroundSegmentation(const GroundSegmentation& other)
       up_estimation_is_given_(other.up_estimation_is_given_),
       height_tolerance_(other.height_tolerance_),
       up_(other.up_),
+      origin_(other.origin_),
       frame_from_input_(other.frame_from_input_),
       far_points_(other.far_points_),
       error_(other.error_),
@@ -68,6 +70,7 @@ GroundSegmentation<PointT>& GroundSegmentation<PointT>::operator=(const GroundSe
   up_estimation_is_given_ = other.up_estimation_is_given_;
   height_tolerance_ = other.height_tolerance_;
   up_ = other.up_;
+  origin_ = other.origin_;
   frame_from_input_ = other.frame_from_input_;
   far_points_ = other.far_points_;
   error_ = other.error_;
@@ -130,7 +133,7 @@ std::vector<double> GroundSegmentation<PointT>::getHeightAboveGround() const {
   if (!points.areValid()) return {};
   std::vector<double> heights(points.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t n = 0; n < points.size(); ++n)
-    if (points.isFinite(n)) heights[n] = surface.heightAbove({points[n].x, points[n].y, points[n].z});
+    if (points.isFinite(n)) heights[n] = surface.heightAbove(points.place(n));
   return heights;
 }
 
@@ -139,7 +142,8 @@ core::Points GroundSegmentation<PointT>::getLevelPoints() const {
   if (!input_) return {};
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   if (!points.areValid()) return {};
-  return core::transformed(core::usablePoints(points.rawPoints()).points, frame_from_input_);
+  const Eigen::Isometry3d frame_from_points = frame_from_input_ * Eigen::Translation3d(origin_);
+  return core::transformed(core::usablePoints(points.rawPoints(origin_)).points, frame_from_points);
 }
 
 template <typename PointT>
@@ -196,7 +200,18 @@ void GroundSegmentation<PointT>::applyFilter(PointCloud& output) {
     copyPoints(impl::indicesWhere(points, labels, [kept](core::Label l) { return l == kept; }), output);
 }
 
-/// A label per index; none at all if an index is invalid.
+/// The points made ready near the origin, the frame taking them where they are.
+template <typename PointT>
+core::PreparedScan GroundSegmentation<PointT>::prepare(const impl::IndexedPoints<PointT>& points) {
+  origin_ = points.origin();
+  core::FrameParameters parameters = frame_parameters_;
+  if (parameters.sensor_position) *parameters.sensor_position -= origin_;
+  core::PreparedScan scan = core::prepare(points.rawPoints(origin_), parameters);
+  scan.frame_from_input = scan.frame_from_input * Eigen::Translation3d(-origin_);
+  return scan;
+}
+
+/// A label per index; none at all if an index, or the cloud, is invalid.
 template <typename PointT>
 core::Labels GroundSegmentation<PointT>::computeLabels() {
   warnings_.clear();
@@ -206,10 +221,10 @@ core::Labels GroundSegmentation<PointT>::computeLabels() {
   if (!points.areValid()) {
     up_ = core::UpDirection();
     labelScan(core::PreparedScan());  // forgets the last run
-    reportError("the indices reach beyond the cloud of " + std::to_string(input_->size()) + " points");
+    reportError(points.problem());
     return {};
   }
-  const core::PreparedScan scan = core::prepare(points.rawPoints(), frame_parameters_);
+  const core::PreparedScan scan = prepare(points);
   up_ = scan.up;
   for (const std::string& sentence : up_.warnings) warn(sentence);
   core::Labels labels = labelScan(scan);
@@ -252,27 +267,27 @@ void GroundSegmentation<PointT>::reportError(const std::string& sentence) {
 /// points.
 template <typename PointT>
 void GroundSegmentation<PointT>::copyPoints(const pcl::Indices& indices, PointCloud& output) const {
-  bool complete = indices.size() == input_->size();
+  const impl::CloudView<PointT> input(*input_);
+  bool complete = indices.size() == input.size();
   for (std::size_t n = 0; complete && n < indices.size(); ++n)
     complete = static_cast<std::size_t>(indices[n]) == n;
-  output.resize(indices.size());
-  for (std::size_t n = 0; n < indices.size(); ++n)
-    output[n] = (*input_)[static_cast<std::size_t>(indices[n])];
+  input.copy(indices, output);
   output.width = complete ? input_->width : static_cast<std::uint32_t>(indices.size());
   output.height = complete ? input_->height : 1;
   output.is_dense = input_->is_dense;
+  if constexpr (std::is_same_v<PointT, pcl::PCLPointCloud2>)
+    output.row_step = output.width * output.point_step;
 }
 
 /// The whole input, x, y and z of what is not kept replaced by the user's value.
 template <typename PointT>
 void GroundSegmentation<PointT>::copyOrganized(const core::Labels& labels, PointCloud& output) const {
   output = *input_;
+  const impl::CloudView<PointT> input(*input_);
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
-  for (std::size_t n = 0; n < labels.size(); ++n) {
-    if (labels[n] == keptLabel()) continue;
-    PointT& point = output[static_cast<std::size_t>(points.index(n))];
-    point.x = point.y = point.z = user_filter_value_;
-  }
+  for (std::size_t n = 0; n < labels.size(); ++n)
+    if (labels[n] != keptLabel())
+      input.replace(static_cast<std::size_t>(points.index(n)), user_filter_value_, output);
   if (!labels.empty() && !std::isfinite(user_filter_value_)) output.is_dense = false;
 }
 

@@ -4,11 +4,16 @@
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "pcl_fft_ground/core/scan/prepare.h"
+#include "pcl_fft_ground/impl/cloud_view.hpp"
 
 namespace pcl_fft_ground::impl {
 
@@ -16,36 +21,47 @@ namespace pcl_fft_ground::impl {
 template <typename PointT>
 class IndexedPoints {
  public:
+  using Cloud = typename CloudView<PointT>::Cloud;
+
   /// \param indices may be null: all points
-  IndexedPoints(const pcl::PointCloud<PointT>& cloud, const pcl::Indices* indices)
-      : cloud_(cloud), indices_(indices) {}
+  IndexedPoints(const Cloud& cloud, const pcl::Indices* indices) : cloud_(cloud), indices_(indices) {}
 
   std::size_t size() const { return indices_ ? indices_->size() : cloud_.size(); }
   pcl::index_t index(std::size_t n) const { return indices_ ? (*indices_)[n] : static_cast<pcl::index_t>(n); }
-  const PointT& operator[](std::size_t n) const { return cloud_[static_cast<std::size_t>(index(n))]; }
+  Eigen::Vector3d place(std::size_t n) const { return cloud_.place(position(n)); }
 
   /// True if x, y and z of a point are finite, whatever `is_dense` claims.
-  bool isFinite(std::size_t n) const {
-    const PointT& p = (*this)[n];
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  bool isFinite(std::size_t n) const { return cloud_.isFinite(position(n)); }
+
+  /// True if the cloud can be read and every index lies within it.
+  bool areValid() const { return cloud_.problem().empty() && !isBeyond(); }
+
+  /// Why the points are not valid; empty if they are.
+  std::string problem() const {
+    if (!cloud_.problem().empty()) return std::string(cloud_.problem());
+    if (!isBeyond()) return "";
+    return "the indices reach beyond the cloud of " + std::to_string(cloud_.size()) + " points";
   }
 
-  /// True if every index lies within the cloud.
-  bool areValid() const {
-    if (!indices_) return true;
-    for (const pcl::index_t i : *indices_)
-      if (i < 0 || static_cast<std::size_t>(i) >= cloud_.size()) return false;
-    return true;
-  }
-
-  /// All points in the order of the list, finite or not.
-  core::RawPoints rawPoints() const {
-    core::RawPoints points(3, static_cast<Eigen::Index>(size()));
+  /// What is to be subtracted from the points, or a float would not hold their details: core::wholeOrigin()
+  /// of coordinates in double, zero of others, which have lost what a float does not hold.
+  Eigen::Vector3d origin() const {
+    if (!cloud_.isDouble()) return Eigen::Vector3d::Zero();
+    std::array<std::vector<double>, 3> xyz;
+    for (std::vector<double>& values : xyz) values.reserve(size());
     for (std::size_t n = 0; n < size(); ++n) {
-      const PointT& p = (*this)[n];
-      points.col(static_cast<Eigen::Index>(n)) =
-          Eigen::Vector3f(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+      const Eigen::Vector3d p = place(n);
+      for (std::size_t axis = 0; axis < 3; ++axis) xyz[axis].push_back(p[static_cast<Eigen::Index>(axis)]);
     }
+    return {core::wholeOrigin(std::move(xyz[0])), core::wholeOrigin(std::move(xyz[1])),
+            core::wholeOrigin(std::move(xyz[2]))};
+  }
+
+  /// All points in the order of the list, finite or not, less an origin: that of origin().
+  core::RawPoints rawPoints(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) const {
+    core::RawPoints points(3, static_cast<Eigen::Index>(size()));
+    for (std::size_t n = 0; n < size(); ++n)
+      points.col(static_cast<Eigen::Index>(n)) = cloud_.local(position(n), origin);
     return points;
   }
 
@@ -54,9 +70,7 @@ class IndexedPoints {
     core::Points points(3, static_cast<Eigen::Index>(size()));
     Eigen::Index count = 0;
     for (std::size_t n = 0; n < size(); ++n) {
-      const PointT& p = (*this)[n];
-      points.col(count) =
-          Eigen::Vector3f(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+      points.col(count) = cloud_.local(position(n), Eigen::Vector3d::Zero());
       if (isFinite(n)) ++count;
     }
     if (count < points.cols()) points.conservativeResize(Eigen::NoChange, count);
@@ -75,7 +89,15 @@ class IndexedPoints {
   }
 
  private:
-  const pcl::PointCloud<PointT>& cloud_;
+  std::size_t position(std::size_t n) const { return static_cast<std::size_t>(index(n)); }
+
+  bool isBeyond() const {
+    return indices_ && std::any_of(indices_->begin(), indices_->end(), [this](pcl::index_t i) {
+             return i < 0 || static_cast<std::size_t>(i) >= cloud_.size();
+           });
+  }
+
+  CloudView<PointT> cloud_;
   const pcl::Indices* indices_;
 };
 
