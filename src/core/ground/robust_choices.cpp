@@ -1,5 +1,7 @@
 #include "ground/robust_choices.h"
 
+#include "pcl_fft_ground/core/ground/robust_ground.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,21 +48,23 @@ double chooseFinestWavelength(const RobustParameters& parameters, double max_obj
 
 /// Between points that lie so far apart [m] the ground is not known: on a slope it may differ by the slope
 /// times this distance.
-double pointSpacing(const ElevationGrid& elevation, Eigen::Index points) {
-  const auto observed = static_cast<double>(elevation.observed.count());
-  return elevation.geometry.cell_size * std::min(1.0, std::sqrt(observed / static_cast<double>(points)));
+double pointSpacing(double cell_size, Eigen::Index observed, Eigen::Index points) {
+  return cell_size * std::min(1.0, std::sqrt(static_cast<double>(observed) / static_cast<double>(points)));
 }
 
 }  // namespace
 
-RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bounds, Eigen::Index points,
-                            Choices& choices) {
-  constexpr double NARROWEST = 1e-3;  // of the other extent
+RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bounds, Eigen::Index points) {
+  constexpr Eigen::Index POINTS_PER_CELL = 10;  // as many tell where its ground lies
+  constexpr double NARROWEST = 1e-3;            // of the other extent
   constexpr double SLOPE = 0.04;
   constexpr double BEYOND_ALL = 1000;  // times the scan: anything longer does the same
   constexpr double NYQUIST = 2;        // cells to the shortest wavelength that they hold
   const Eigen::Array2d extents = (bounds.high - bounds.low).head<2>();
   RobustPlan plan;
+  Choices& choices = plan.choices;
+  plan.bounds = bounds;
+  plan.points = points;
   plan.extent = extents.minCoeff();
   const double widest = widestOf(extents);
   const double extent = plan.extent > NARROWEST * widest ? plan.extent : widest;
@@ -77,10 +81,12 @@ RobustPlan planRobustGround(const RobustParameters& parameters, const Bounds& bo
   plan.finest_wavelength = std::clamp(plan.finest_wavelength, NYQUIST * plan.cells.cell_size,
                                       std::max(NYQUIST * plan.cells.cell_size, largest));
   plan.slope = SLOPE;
+  plan.sample = POINTS_PER_CELL * plan.cells.rows * plan.cells.cols;
   return plan;
 }
 
-void chooseTolerances(const RobustParameters& parameters, Eigen::Index points, RobustGround& ground) {
+void chooseTolerances(const RobustParameters& parameters, const RobustPlan& plan, Eigen::Index observed,
+                      RobustGround& ground) {
   constexpr double SCALES = 3, MORE_SCALES = 4.25, MOST_SCALES = 10, SPACINGS = 1.25;
   constexpr double DEPTH_SCALES = 10, LEAST_SPREAD = 4e-4;
   const double usual = USUAL_TOLERANCE * ground.max_object_size;
@@ -95,7 +101,7 @@ void chooseTolerances(const RobustParameters& parameters, Eigen::Index points, R
              ground.choices);
   ground.most_tolerance =
       parameters.height_tolerance.value_or(std::max(noise, std::min(usual, MOST_SCALES * spread)));
-  ground.slope_tolerance = SPACINGS * pointSpacing(ground.elevation, points);
+  ground.slope_tolerance = SPACINGS * pointSpacing(plan.cells.cell_size, observed, plan.points);
   ground.depth_tolerance = std::max(USUAL_DEPTH * ground.max_object_size, DEPTH_SCALES * ground.scale);
 }
 

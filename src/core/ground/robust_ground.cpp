@@ -108,19 +108,32 @@ void describeSurface(const RobustSurface& surface, const RobustPlan& plan, Robus
 
 RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
                                   const RobustParameters& parameters) {
-  constexpr Eigen::Index POINTS_PER_CELL = 10;              // as many tell where its ground lies
+  if (points.cols() == 0) {
+    RobustGround nothing;
+    nothing.surface.frame_from_input = frame_from_input;
+    return nothing;
+  }
+  const RobustPlan plan = planRobustGround(parameters, boundsOf(points), points.cols());
+  RobustGround ground = fitRobustGround(points, frame_from_input, plan, parameters);
+  chooseTolerances(parameters, plan, ground.elevation.observed.count(), ground);
+  return ground;
+}
+
+Points plannedSample(const PointsView& points, const RobustPlan& plan) {
+  return sampleOfSample(points, plan.points, plan.sample);
+}
+
+RobustGround fitRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
+                             const RobustPlan& plan, const RobustParameters& parameters) {
   constexpr double LEAST_SCALE = 0.0015, PRECISION = 1e-4;  // as shares of the largest object
   RobustGround ground;
   ground.surface.frame_from_input = frame_from_input;
-  if (points.cols() == 0) return ground;
-  const Bounds bounds = boundsOf(points);
-  const RobustPlan plan = planRobustGround(parameters, bounds, points.cols(), ground.choices);
+  ground.choices = plan.choices;
   ground.extent = plan.extent;
   ground.max_object_size = plan.max_object_size;
   ground.finest_wavelength = plan.finest_wavelength;
 
-  const Points sample = sampleOf(points, POINTS_PER_CELL * plan.cells.rows * plan.cells.cols);
-  const SortedPoints sorted(sample, bounds, plan.cells);
+  const SortedPoints sorted(plannedSample(points, plan), plan.bounds, plan.cells);
   CellPoints cell_points = representativePoints(sorted, plan.statistic);
   ground.elevation = elevationOf(cell_points, plan.cells);
   RobustSurface surface(std::move(cell_points), plan.cells,
@@ -133,7 +146,6 @@ RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometr
   const GroundPoints found = fitGroundPoints(surface, sorted, USUAL_TOLERANCE * plan.max_object_size);
   ground.scale = found.spread;
   describeSurface(surface, plan, ground);
-  chooseTolerances(parameters, points.cols(), ground);
   ground.lowest = lowestHeights(sorted, {surface.grid(), surface.heights(), 0, 0});
   ground.steps.setZero(plan.cells.rows, plan.cells.cols);
   if (completed.any()) {

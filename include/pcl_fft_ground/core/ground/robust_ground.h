@@ -10,6 +10,7 @@
 #include "pcl_fft_ground/core/grid/elevation_grid.h"
 #include "pcl_fft_ground/core/ground/ground_surface.h"
 #include "pcl_fft_ground/core/ground/labels.h"
+#include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "pcl_fft_ground/core/scan/points.h"
 
 namespace pcl_fft_ground::core {
@@ -77,6 +78,46 @@ struct RobustGround {
 PCL_FFT_GROUND_CORE_EXPORT RobustGround estimateRobustGround(const PointsView& level_points,
                                                              const Eigen::Isometry3d& frame_from_input,
                                                              const RobustParameters& parameters);
+
+/// What must be the same wherever the ground of a scan is fitted, in one piece or tile by tile: all values
+/// given or chosen from the whole scan.
+struct RobustPlan {
+  Bounds bounds;               ///< of all points, in the level frame
+  Eigen::Index points = 0;     ///< number of all points
+  double extent = 0;           ///< smaller horizontal extent of the points [m]
+  double max_object_size = 0;  ///< [m]
+  GridGeometry cells;  ///< the elevation cells: of the scan or, for a tile, those of them that it fits
+  CellStatistic statistic = CellStatistic::LOWEST;
+  double finest_wavelength = 0;       ///< [m]
+  double slope = 0;                   ///< of the scale's floor: threshold as a share of the wavelength [m/m]
+  Eigen::Index sample = 0;            ///< about as many points of the whole scan are looked at
+  std::vector<RobustChoice> choices;  ///< of the values that were not set
+};
+
+/** Chooses what is not set from the bounds and the number of the points of a whole scan.
+ * \throws std::length_error if the grid would have more than MAX_CELLS cells
+ */
+PCL_FFT_GROUND_CORE_EXPORT RobustPlan planRobustGround(const RobustParameters& parameters,
+                                                       const Bounds& bounds, Eigen::Index points);
+
+/** estimateRobustGround() by a plan, but for the tolerances, which hang on the ground of the whole scan.
+ * \param level_points at least one point; all points of the scan in the plan's cells, or no fewer than
+ *        plannedSample() of them
+ */
+PCL_FFT_GROUND_CORE_EXPORT RobustGround fitRobustGround(const PointsView& level_points,
+                                                        const Eigen::Isometry3d& frame_from_input,
+                                                        const RobustPlan& plan,
+                                                        const RobustParameters& parameters);
+
+/// Those points of a part of the scan that a fit by the plan looks at, chosen by their coordinates.
+PCL_FFT_GROUND_CORE_EXPORT Points plannedSample(const PointsView& level_points, const RobustPlan& plan);
+
+/** Chooses the tolerances by the spread of the ground, the size of objects and the spacing of the points.
+ * \param ground its scale and largest object are those of the whole scan
+ * \param observed number of the scan's cells that hold points
+ */
+PCL_FFT_GROUND_CORE_EXPORT void chooseTolerances(const RobustParameters& parameters, const RobustPlan& plan,
+                                                 Eigen::Index observed, RobustGround& ground);
 
 /// Labels of points, those below the ground counted apart.
 struct RobustLabels {
