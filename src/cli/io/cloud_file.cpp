@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "errors.h"
+#include "io/cloud_parts.h"
 #include "io/output_file.h"
 #include "io/scanner.h"
 #include "pcl_fft_ground/core/scan/point_statistics.h"
@@ -25,8 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int neither_label = 2;
-
-using Coordinates = std::array<std::vector<double>, 3>;
 
 std::string readWholeFile(const std::string& path) {
   std::error_code error;
@@ -153,19 +152,32 @@ RawCloud decodeAs(CloudFormat format, std::string_view content) {
   return decodeText(content);
 }
 
-RawCloud decode(const std::string& path, const std::string& content, const ReadOptions& options,
-                CloudFormat& format) {
+bool isBin(const std::string& path, std::string_view content) {
+  return lowerExtension(path) == ".bin" && !looksLikePly(content) && !looksLikePcd(content);
+}
+
+}  // namespace
+
+CloudFormat formatOf(const std::string& path, std::string_view content, const ReadOptions& options) {
   const std::string extension = lowerExtension(path);
   if (!options.format) refuseForeign(content, extension);
-  const bool is_bin = extension == ".bin" && !looksLikePly(content) && !looksLikePcd(content);
-  format = options.format                                 ? *options.format
-           : looksLikePly(content)                        ? CloudFormat::PLY
-           : looksLikeLas(content)                        ? CloudFormat::LAS
-           : is_bin                                       ? CloudFormat::KITTI
-           : looksLikePcd(content) || extension == ".pcd" ? CloudFormat::PCD
-           : extension == ".ply"                          ? CloudFormat::PLY
-           : extension == ".las" || extension == ".laz"   ? CloudFormat::LAS
-                                                          : CloudFormat::TEXT;
+  const bool is_bin = isBin(path, content);
+  return options.format                                 ? *options.format
+         : looksLikePly(content)                        ? CloudFormat::PLY
+         : looksLikeLas(content)                        ? CloudFormat::LAS
+         : is_bin                                       ? CloudFormat::KITTI
+         : looksLikePcd(content) || extension == ".pcd" ? CloudFormat::PCD
+         : extension == ".ply"                          ? CloudFormat::PLY
+         : extension == ".las" || extension == ".laz"   ? CloudFormat::LAS
+                                                        : CloudFormat::TEXT;
+}
+
+namespace {
+
+RawCloud decode(const std::string& path, const std::string& content, const ReadOptions& options,
+                CloudFormat& format) {
+  format = formatOf(path, content, options);
+  const bool is_bin = isBin(path, content);
   if (is_bin && !options.format && format == CloudFormat::KITTI) return decodeFloats(content, std::nullopt);
   return decodeAs(format, content);
 }
@@ -245,8 +257,8 @@ void withhold(const std::vector<bool>& withheld, pcl::PointCloud<pcl::PointXYZ>&
   }
 }
 
-/// The numbers of the label field; NaN where they are none, and for points that are not used. Empty if there
-/// are no numbers at all.
+}  // namespace
+
 std::vector<double> labelNumbers(const RawCloud& raw) {
   const char* const las_field = "classification";
   const pcl::PCLPointField* const field =
@@ -258,6 +270,8 @@ std::vector<double> labelNumbers(const RawCloud& raw) {
   const bool any = std::any_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
   return any ? numbers : std::vector<double>();
 }
+
+namespace {
 
 /// The different numbers, in order, the first ten at most.
 std::string listValues(const std::vector<double>& numbers) {
@@ -274,10 +288,6 @@ std::string listValues(const std::vector<double>& numbers) {
   if (values.size() > most_values) list << " ... (" << values.size() << " values)";
   return list.str();
 }
-
-struct LabelMeaning {
-  std::vector<int> ground, ignored;
-};
 
 /// \return nothing where it is not known what the numbers mean
 std::optional<LabelMeaning> meaningOf(const std::vector<double>& numbers, LabelScheme scheme,
@@ -301,6 +311,8 @@ std::optional<LabelMeaning> meaningOf(const std::vector<double>& numbers, LabelS
   return LabelMeaning{ground, {neither_label}};
 }
 
+}  // namespace
+
 std::vector<int> labelsBy(const LabelMeaning& meaning, const std::vector<double>& numbers) {
   const auto is_among = [](const std::vector<int>& classes, double number) {
     return std::any_of(classes.begin(), classes.end(), [&](int c) { return c == number; });
@@ -315,39 +327,31 @@ std::vector<int> labelsBy(const LabelMeaning& meaning, const std::vector<double>
   return labels;
 }
 
-void interpretLabels(const RawCloud& raw, const ReadOptions& options, Cloud& cloud) {
-  const std::vector<double> numbers = labelNumbers(raw);
+LabelVerdict judgeLabels(const std::vector<double>& numbers, const RawCloud& raw,
+                         const ReadOptions& options) {
   if (numbers.empty()) {
-    if (options.ground_classes || options.ignored_classes)
-      cloud.label_fault = "it has no labels that --ground-classes or --ignore-classes could tell apart";
-    return;
+    if (!options.ground_classes && !options.ignored_classes) return {};
+    return {std::nullopt, "it has no labels that --ground-classes or --ignore-classes could tell apart"};
   }
   const bool is_called_label = findField(raw.table, "label") != nullptr;
   const auto meaning = meaningOf(numbers, raw.label_scheme, is_called_label, options);
   if (!meaning) {
-    cloud.label_fault = "its labels are " + listValues(numbers) + ": no scores, as " +
-                        (is_called_label ? "only 0 (ground), 1 (object) and 2 (neither) are known"
-                                         : "it is not known which of them are ground") +
-                        "; --ground-classes and --ignore-classes tell";
-    return;
+    return {std::nullopt, "its labels are " + listValues(numbers) + ": no scores, as " +
+                              (is_called_label ? "only 0 (ground), 1 (object) and 2 (neither) are known"
+                                               : "it is not known which of them are ground") +
+                              "; --ground-classes and --ignore-classes tell"};
   }
-  std::vector<int> labels = labelsBy(*meaning, numbers);
+  const std::vector<int> labels = labelsBy(*meaning, numbers);
   const bool known_ground = std::find(labels.begin(), labels.end(), 0) != labels.end();
-  if (options.ground_classes && !known_ground) {
-    cloud.label_fault =
-        "none of its labels, " + listValues(numbers) + ", is among --ground-classes: no scores";
-    return;
-  }
-  cloud.labels = std::move(labels);
+  if (options.ground_classes && !known_ground)
+    return {std::nullopt,
+            "none of its labels, " + listValues(numbers) + ", is among --ground-classes: no scores"};
+  return {meaning, ""};
 }
 
-Cloud interpret(RawCloud raw, const ReadOptions& options) {
-  if (pointCount(raw.table) == 0) throw WorkError("it holds no points");
-  nameCoordinates(raw.table);
-  const Coordinates xyz{coordinate(raw.table, "x"), coordinate(raw.table, "y"), coordinate(raw.table, "z")};
+Cloud interpretCoordinates(RawCloud raw, const Coordinates& xyz, const Eigen::Vector3d& origin) {
   Cloud cloud;
-  cloud.origin =
-      Eigen::Vector3d(core::wholeOrigin(xyz[0]), core::wholeOrigin(xyz[1]), core::wholeOrigin(xyz[2]));
+  cloud.origin = origin;
   cloud.viewpoint = raw.viewpoint;
   cloud.viewpoint.position = raw.viewpoint.asTransform() * cloud.origin;
   cloud.pose_fault = raw.pose_fault;
@@ -357,7 +361,26 @@ Cloud interpret(RawCloud raw, const ReadOptions& options) {
   cloud.fields = withFloatCoordinates(raw.table, *cloud.points);
   withhold(raw.withheld, *cloud.points);
   cloud.fields.is_dense = cloud.points->is_dense;
-  interpretLabels(raw, options, cloud);
+  return cloud;
+}
+
+Coordinates coordinatesOf(RawCloud& raw) {
+  nameCoordinates(raw.table);
+  return {coordinate(raw.table, "x"), coordinate(raw.table, "y"), coordinate(raw.table, "z")};
+}
+
+namespace {
+
+Cloud interpret(RawCloud raw, const ReadOptions& options) {
+  if (pointCount(raw.table) == 0) throw WorkError("it holds no points");
+  const Coordinates xyz = coordinatesOf(raw);
+  const Eigen::Vector3d origin(core::wholeOrigin(xyz[0]), core::wholeOrigin(xyz[1]),
+                               core::wholeOrigin(xyz[2]));
+  const std::vector<double> numbers = labelNumbers(raw);
+  const LabelVerdict verdict = judgeLabels(numbers, raw, options);
+  Cloud cloud = interpretCoordinates(std::move(raw), xyz, origin);
+  cloud.label_fault = verdict.fault;
+  if (verdict.meaning) cloud.labels = labelsBy(*verdict.meaning, numbers);
   return cloud;
 }
 

@@ -61,6 +61,12 @@ Cloud readCloud(const std::string& path, const ReadOptions& options = {});
 /// \throws WorkError naming the file
 void writePcd(const std::string& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint = {});
 
+/// The header of a binary PCD file of the cloud's fields, width and height; its points follow, packed.
+///
+/// Unlike pcl::PCDWriter's header, this one keeps all digits of the viewpoint and allows for a cloud without
+/// points.
+std::string pcdHeader(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint);
+
 /// Writes the LAS file `input` with other classes as `path`, whole or not at all; see reclassifiedLas().
 /// \throws WorkError naming the file
 void writeReclassified(const std::string& path, const std::string& input, const std::vector<int>& classes);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -74,6 +75,26 @@ pcl::PCLPointCloud2 readRecords(std::string_view bytes, std::size_t record_bytes
 
 /// A field for readRecords().
 pcl::PCLPointField recordField(const std::string& name, std::size_t offset, std::uint8_t datatype);
+
+/// A file whose points stand as records of one size behind one another: any part of it can be read by itself.
+struct RecordFile {
+  std::uint64_t begin = 0;  ///< byte of the first record
+  std::size_t record_bytes = 0;
+  std::size_t width = 0;  ///< width times height is the number of points
+  std::size_t height = 1;
+  std::function<RawCloud(std::string_view records)> decode;  ///< of some records, one behind the other
+
+  std::size_t points() const { return width * height; }
+};
+
+/** How the records of a PCD, PLY or LAS file are read; nothing where its points are no such records (text,
+ * compressed, with lists).
+ * \param head first bytes of the file, the header and all that stands before the points among them
+ * \throws WorkError for a header that is wrong
+ */
+std::optional<RecordFile> pcdRecords(std::string_view head);
+std::optional<RecordFile> plyRecords(std::string_view head);
+std::optional<RecordFile> lasRecords(std::string_view head, std::uint64_t file_size);
 
 /// Whether a file's content begins as one of these does.
 bool looksLikePcd(std::string_view content);

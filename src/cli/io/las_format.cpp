@@ -87,16 +87,17 @@ bool hasMoreBehindPoints(std::string_view content, unsigned minor) {
   return waveforms || (minor >= 4 && content.size() >= 247 && numberAt<std::uint32_t>(content, 243) != 0);
 }
 
-void readExtent(std::string_view content, unsigned minor, LasHeader& header) {
+/// \param file_size bytes of the file, of which `content` may be the first ones only
+void readExtent(std::string_view content, std::uint64_t file_size, unsigned minor, LasHeader& header) {
   header.points_begin = numberAt<std::uint32_t>(content, 96);
   if (header.points_begin < shortest_header)
     throw WorkError("the LAS header's offset to its points, " + std::to_string(header.points_begin) +
                     ", lies within the header");
   const std::uint64_t count = countInHeader(content, minor);
-  if (header.points_begin > content.size() && count != 0)
+  if (header.points_begin > file_size && count != 0)
     throw WorkError("it is truncated: its points begin at byte " + std::to_string(header.points_begin) +
-                    " of " + std::to_string(content.size()));
-  const std::size_t room = content.size() - std::min(content.size(), header.points_begin);
+                    " of " + std::to_string(file_size));
+  const std::size_t room = file_size - std::min<std::uint64_t>(file_size, header.points_begin);
   const std::size_t most = room / header.record_bytes;
   if (count > most)
     throw WorkError("it is truncated: its header counts " + std::to_string(count) + " points of " +
@@ -112,7 +113,7 @@ void readExtent(std::string_view content, unsigned minor, LasHeader& header) {
                     " bytes follow");
 }
 
-LasHeader parseHeader(std::string_view content) {
+LasHeader parseHeader(std::string_view content, std::uint64_t file_size) {
   if (!looksLikeLas(content)) throw WorkError("it is no LAS file: it does not begin with 'LASF'");
   const std::size_t header_bytes =
       content.size() < shortest_header ? shortest_header : numberAt<std::uint16_t>(content, 94);
@@ -127,7 +128,7 @@ LasHeader parseHeader(std::string_view content) {
   LasHeader header;
   readRecordFormat(content, header);
   readTransform(content, header);
-  readExtent(content, minor, header);
+  readExtent(content, file_size, minor, header);
   return header;
 }
 
@@ -161,15 +162,15 @@ void put(std::uint8_t*& bytes, Value value) {
 }
 
 /// The fields that are computed: coordinates, and what shares its bytes with others.
-pcl::PCLPointCloud2 computedFields(std::string_view body, const LasHeader& header) {
+pcl::PCLPointCloud2 computedFields(std::string_view body, const LasHeader& header, std::size_t points) {
   pcl::PCLPointCloud2 table;
   for (const char* name : {"x", "y", "z"}) appendField(table, name, Field::FLOAT64, 1);
   for (const char* name : {"classification", "return_number", "number_of_returns"})
     appendField(table, name, Field::UINT8, 1);
   appendField(table, "scan_angle", Field::FLOAT32, 1);
-  allocatePoints(table, header.points, 1);
+  allocatePoints(table, points, 1);
   std::uint8_t* bytes = table.data.data();
-  for (std::size_t n = 0; n < header.points; ++n) {
+  for (std::size_t n = 0; n < points; ++n) {
     const std::string_view record = body.substr(n * header.record_bytes, header.record_bytes);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<Eigen::Index>(axis);
@@ -238,6 +239,20 @@ std::string crsOf(std::string_view content, std::size_t points_begin) {
   return by_key;
 }
 
+RawCloud decodePoints(std::string_view body, const LasHeader& header, std::size_t points,
+                      const std::string& crs) {
+  RawCloud cloud;
+  cloud.label_scheme = LabelScheme::ASPRS;
+  cloud.crs = crs;
+  if (!header.remark.empty()) cloud.remarks.push_back(header.remark);
+  cloud.table = joined(computedFields(body, header, points),
+                       readRecords(body, header.record_bytes, plainFields(header), points));
+  cloud.withheld.resize(points);
+  for (std::size_t n = 0; n < points; ++n)
+    cloud.withheld[n] = header.isWithheld(body.substr(n * header.record_bytes, header.record_bytes));
+  return cloud;
+}
+
 }  // namespace
 
 bool looksLikeLas(std::string_view content) {
@@ -245,22 +260,22 @@ bool looksLikeLas(std::string_view content) {
 }
 
 RawCloud decodeLas(std::string_view content) {
-  const LasHeader header = parseHeader(content);
-  RawCloud cloud;
-  cloud.label_scheme = LabelScheme::ASPRS;
-  cloud.crs = crsOf(content, header.points_begin);
-  if (!header.remark.empty()) cloud.remarks.push_back(header.remark);
+  const LasHeader header = parseHeader(content, content.size());
   const std::string_view body = content.substr(std::min(content.size(), header.points_begin));
-  cloud.table = joined(computedFields(body, header),
-                       readRecords(body, header.record_bytes, plainFields(header), header.points));
-  cloud.withheld.resize(header.points);
-  for (std::size_t n = 0; n < header.points; ++n)
-    cloud.withheld[n] = header.isWithheld(body.substr(n * header.record_bytes, header.record_bytes));
-  return cloud;
+  return decodePoints(body, header, header.points, crsOf(content, header.points_begin));
+}
+
+std::optional<RecordFile> lasRecords(std::string_view head, std::uint64_t file_size) {
+  const LasHeader header = parseHeader(head, file_size);
+  const std::string crs = crsOf(head, header.points_begin);
+  return RecordFile{header.points_begin, header.record_bytes, header.points, 1,
+                    [header, crs](std::string_view records) {
+                      return decodePoints(records, header, records.size() / header.record_bytes, crs);
+                    }};
 }
 
 std::string reclassifiedLas(std::string content, const std::vector<int>& classes) {
-  const LasHeader header = parseHeader(content);
+  const LasHeader header = parseHeader(content, content.size());
   if (classes.size() != header.points)
     throw WorkError("it has changed: it had " + std::to_string(classes.size()) + " points and has " +
                     std::to_string(header.points));

@@ -256,10 +256,11 @@ void decodeAscii(std::string_view body, const PcdHeader& header, pcl::PCLPointCl
   }
 }
 
-pcl::PCLPointCloud2 decodeBinary(std::string_view body, const PcdHeader& header) {
+pcl::PCLPointCloud2 decodeBinary(std::string_view body, const PcdHeader& header, std::size_t width,
+                                 std::size_t height) {
   std::vector<pcl::PCLPointField> wanted;
   std::remove_copy_if(header.fields.begin(), header.fields.end(), std::back_inserter(wanted), isPadding);
-  return readRecords(body, header.point_bytes, wanted, header.width, header.height);
+  return readRecords(body, header.point_bytes, wanted, width, height);
 }
 
 /// The uncompressed bytes of a compressed body, checked to be as many as wanted.
@@ -322,9 +323,9 @@ char typeLetter(std::uint8_t datatype) {
   }
 }
 
-/// Unlike pcl::PCDWriter's header, this one keeps all digits of the viewpoint and allows for a cloud
-/// without points.
-std::string headerText(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint) {
+}  // namespace
+
+std::string pcdHeader(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint) {
   std::string names, sizes, types, counts;
   for (const auto& field : cloud.fields) {
     names += " " + field.name;
@@ -341,8 +342,6 @@ std::string headerText(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpo
          std::to_string(cloud.height) + "\nVIEWPOINT" + pose + "\nPOINTS " +
          std::to_string(pointCount(cloud)) + "\nDATA binary\n";
 }
-
-}  // namespace
 
 bool looksLikePcd(std::string_view content) {
   while (!content.empty()) {
@@ -363,7 +362,7 @@ RawCloud decodePcd(std::string_view content) {
       decodeAscii(body, header, cloud.table);
       break;
     case PcdStorage::BINARY:
-      cloud.table = decodeBinary(body, header);
+      cloud.table = decodeBinary(body, header, header.width, header.height);
       break;
     case PcdStorage::COMPRESSED:
       decodeCompressed(body, header, cloud.table);
@@ -372,13 +371,24 @@ RawCloud decodePcd(std::string_view content) {
   return cloud;
 }
 
+std::optional<RecordFile> pcdRecords(std::string_view head) {
+  const PcdHeader header = parsePcdHeader(head);
+  if (header.storage != PcdStorage::BINARY || header.point_bytes == 0) return std::nullopt;
+  return RecordFile{header.body, header.point_bytes, header.width, header.height,
+                    [header](std::string_view records) {
+                      RawCloud cloud = emptyCloud(header);
+                      cloud.table = decodeBinary(records, header, records.size() / header.point_bytes, 1);
+                      return cloud;
+                    }};
+}
+
 void writePcd(const std::string& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint) {
   pcl::Indices all(pointCount(cloud));
   std::iota(all.begin(), all.end(), 0);
   pcl::PCLPointCloud2 packed = selectPoints(cloud, all);
   packed.width = cloud.width;
   packed.height = cloud.height;
-  std::string content = headerText(packed, viewpoint);
+  std::string content = pcdHeader(packed, viewpoint);
   content.append(reinterpret_cast<const char*>(packed.data.data()), packed.data.size());
   writeText(path, content);
 }

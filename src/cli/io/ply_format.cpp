@@ -208,15 +208,23 @@ std::string fieldName(const std::string& property) {
 }
 
 /// Vertices without lists are records of one size.
-pcl::PCLPointCloud2 readVertexRecords(std::string_view body, const PlyElement& vertices, ByteOrder order) {
+struct VertexRecords {
   std::vector<pcl::PCLPointField> fields;
   std::size_t bytes = 0;
-  for (const auto& property : vertices.properties) {
-    fields.push_back(recordField(fieldName(property.name), bytes, property.datatype));
-    bytes += valueSize(property.datatype);
+  ByteOrder order = ByteOrder::LITTLE;
+
+  VertexRecords(const PlyElement& vertices, PlyStorage storage)
+      : order(storage == PlyStorage::BINARY_BIG ? ByteOrder::BIG : ByteOrder::LITTLE) {
+    for (const auto& property : vertices.properties) {
+      fields.push_back(recordField(fieldName(property.name), bytes, property.datatype));
+      bytes += valueSize(property.datatype);
+    }
   }
-  return readRecords(body, bytes, fields, vertices.count, 1, order);
-}
+
+  pcl::PCLPointCloud2 read(std::string_view body, std::size_t count) const {
+    return readRecords(body, bytes, fields, count, 1, order);
+  }
+};
 
 pcl::PCLPointCloud2 readVertices(ValueReader& reader, const PlyElement& vertices) {
   pcl::PCLPointCloud2 table;
@@ -225,10 +233,8 @@ pcl::PCLPointCloud2 readVertices(ValueReader& reader, const PlyElement& vertices
   }
   if (table.fields.empty()) throw WorkError("its vertices have no properties x, y, z");
   reader.checkRoom(vertices);
-  if (!hasLists(vertices) && reader.storage() != PlyStorage::ASCII) {
-    const bool big = reader.storage() == PlyStorage::BINARY_BIG;
-    return readVertexRecords(reader.rest(), vertices, big ? ByteOrder::BIG : ByteOrder::LITTLE);
-  }
+  if (!hasLists(vertices) && reader.storage() != PlyStorage::ASCII)
+    return VertexRecords(vertices, reader.storage()).read(reader.rest(), vertices.count);
   allocatePoints(table, vertices.count, 1);
   std::uint8_t* bytes = table.data.data();
   for (std::size_t i = 0; i < vertices.count; ++i) {
@@ -263,6 +269,21 @@ RawCloud decodePly(std::string_view content) {
     reader.skip(element);
   }
   throw WorkError("the PLY header has no element 'vertex'");
+}
+
+std::optional<RecordFile> plyRecords(std::string_view head) {
+  const PlyHeader header = parsePlyHeader(head);
+  const bool is_first = !header.elements.empty() && header.elements.front().name == "vertex";
+  if (!is_first || header.storage == PlyStorage::ASCII || hasLists(header.elements.front()))
+    return std::nullopt;
+  const VertexRecords records(header.elements.front(), header.storage);
+  if (records.bytes == 0) return std::nullopt;
+  return RecordFile{header.body, records.bytes, header.elements.front().count, 1,
+                    [records](std::string_view bytes) {
+                      RawCloud cloud;
+                      cloud.table = records.read(bytes, bytes.size() / records.bytes);
+                      return cloud;
+                    }};
 }
 
 }  // namespace pcl_fft_ground::cli

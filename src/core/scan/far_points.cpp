@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -33,16 +35,24 @@ std::pair<double, double> trimmedRange(const PointsView& points, Eigen::Index ax
 
 }  // namespace
 
+Bounds reachOfScan(const PointsView& points) {
+  constexpr double ANYWHERE = std::numeric_limits<double>::infinity();
+  if (points.cols() < FEWEST_POINTS)
+    return {Eigen::Array3d::Constant(-ANYWHERE), Eigen::Array3d::Constant(ANYWHERE)};
+  Bounds box;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    std::tie(box.low[axis], box.high[axis]) = trimmedRange(points, axis);
+  const double reach = REACH * (box.high - box.low).maxCoeff();
+  return {box.low - reach, box.high + reach};
+}
+
 std::vector<Eigen::Index> findFarPoints(const PointsView& points, const PointStatistics& statistics) {
   if (points.cols() < FEWEST_POINTS || isCompact(statistics, points.cols())) return {};
-  Eigen::Array3d low, high;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) std::tie(low[axis], high[axis]) = trimmedRange(points, axis);
-  const double reach = REACH * (high - low).maxCoeff();
-
+  const Bounds within = reachOfScan(points);
   std::vector<Eigen::Index> far;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Array3d p = points.col(i).cast<double>().array();
-    if ((p < low - reach).any() || (p > high + reach).any()) far.push_back(i);
+    if ((p < within.low).any() || (p > within.high).any()) far.push_back(i);
   }
   return far;
 }

@@ -1,9 +1,11 @@
 #include "pcl_fft_ground/core/scan/frame.h"
 
 #include <cmath>
+#include <vector>
 
 #include "pcl_fft_ground/core/scan/convex_hull.h"
 #include "scan/hull_filter.h"
+#include "scan/level_frame.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -21,18 +23,21 @@ double principalAngle(const Eigen::Matrix2d& covariance) {
   return 0.5 * std::atan2(2 * covariance(0, 1), covariance(0, 0) - covariance(1, 1));
 }
 
-/// Angle [rad] of the smallest rectangle around the points, seen along up.
-double rectangleAngle(const PointsView& points, const Eigen::Vector3d& centre,
-                      const Eigen::Matrix3d& level_from_input) {
+/// The corners of the convex hull of points, seen along up.
+std::vector<Eigen::Vector2d> horizontalHull(const PointsView& points, const Eigen::Vector3d& centre,
+                                            const Eigen::Matrix3d& level_from_input) {
   const HorizontalProjection projection{level_from_input.topRows<2>(), centre};
-  return minimumAreaRectangleAngle(convexHull(outermostPoints(points, projection)));
+  return convexHull(outermostPoints(points, projection));
 }
 
-double estimateYaw(const PointsView& points, const PointStatistics& statistics,
-                   const Eigen::Matrix3d& level_from_input, Yaw yaw) {
+}  // namespace
+
+double yawOf(Yaw yaw, const PointStatistics& statistics, const Eigen::Vector3d& up,
+             const std::vector<Eigen::Vector2d>& hull) {
+  const Eigen::Matrix3d level_from_input = levelFromInput(up);
   switch (yaw) {
     case Yaw::MIN_AREA_RECTANGLE:
-      return rectangleAngle(points, statistics.mean, level_from_input);
+      return minimumAreaRectangleAngle(hull);
     case Yaw::PRINCIPAL_AXES:
       return principalAngle(
           (level_from_input * statistics.covariance * level_from_input.transpose()).topLeftCorner<2, 2>());
@@ -42,19 +47,20 @@ double estimateYaw(const PointsView& points, const PointStatistics& statistics,
   return 0;
 }
 
-}  // namespace
+Eigen::Isometry3d levelFrame(const PointStatistics& statistics, const Eigen::Vector3d& up, double yaw) {
+  Eigen::Isometry3d frame_from_input = Eigen::Isometry3d::Identity();
+  frame_from_input.linear() =
+      Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * levelFromInput(up);
+  frame_from_input.translation() = -(frame_from_input.linear() * statistics.mean);
+  return frame_from_input;
+}
 
 Eigen::Isometry3d levelFrame(const PointsView& points, const PointStatistics& statistics,
                              const Eigen::Vector3d& up, Yaw yaw) {
   if (points.cols() == 0) return Eigen::Isometry3d::Identity();
-  const Eigen::Matrix3d level_from_input = levelFromInput(up);
-  const double angle = estimateYaw(points, statistics, level_from_input, yaw);
-
-  Eigen::Isometry3d frame_from_input = Eigen::Isometry3d::Identity();
-  frame_from_input.linear() =
-      Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level_from_input;
-  frame_from_input.translation() = -(frame_from_input.linear() * statistics.mean);
-  return frame_from_input;
+  std::vector<Eigen::Vector2d> hull;
+  if (yaw == Yaw::MIN_AREA_RECTANGLE) hull = horizontalHull(points, statistics.mean, levelFromInput(up));
+  return levelFrame(statistics, up, yawOf(yaw, statistics, up, hull));
 }
 
 Eigen::Isometry3d estimateFrame(const PointsView& points, const PointStatistics& statistics,
