@@ -1,6 +1,7 @@
 #include "command_line.h"
 
 #include <cctype>
+#include <filesystem>
 #include <typeinfo>
 
 #include "errors.h"
@@ -81,6 +82,28 @@ po::variables_map parseArguments(const std::string& command, const std::vector<s
   } catch (const po::error& error) {
     throw UsageError(command + ": " + error.what());
   }
+}
+
+void addReportOption(po::options_description& options) {
+  options.add_options()(
+      "report", po::value<std::string>()->value_name("FILE"),
+      "write a page of HTML, too, which needs nothing else: a view in three dimensions that can be "
+      "turned, pictures, tables, parameters and warnings");
+}
+
+std::string reportPath(const po::variables_map& values, const std::string& output) {
+  if (values.count("report") == 0) return "";
+  namespace fs = std::filesystem;
+  const auto path = values["report"].as<std::string>();
+  if (fs::path(path).filename().empty())
+    throw UsageError("--report " + path + ": allowed is the name of a file");
+  // With a slash at the end, whether there was one or not.
+  const auto folderOf = [](const fs::path& folder) { return fs::absolute(folder / ".").lexically_normal(); };
+  const fs::path folder = folderOf(fs::path(path).parent_path());
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored) && (output.empty() || folder != folderOf(output)))
+    throw WorkError("cannot write '" + path + "': its folder does not exist");
+  return path;
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -24,4 +24,13 @@ boost::program_options::variables_map parseArguments(
     const boost::program_options::options_description& options,
     const boost::program_options::positional_options_description& positional);
 
+/// Adds --report FILE.
+void addReportOption(boost::program_options::options_description& options);
+
+/** The file that --report names; empty without it.
+ * \param output directory for the results, which may not be there yet; empty where there is none
+ * \throws UsageError if it names no file, WorkError if its folder is not there
+ */
+std::string reportPath(const boost::program_options::variables_map& values, const std::string& output);
+
 }  // namespace pcl_fft_ground::cli

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "errors.h"
@@ -63,6 +64,20 @@ void writeWhole(const std::string& path, const std::function<void(const std::str
   if (!fs::is_regular_file(temporary.path(), error)) fail(path, "the file was not made");
   fs::rename(temporary.path(), path, error);
   if (error) fail(path, error.message());
+}
+
+std::string fileBytes(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.is_open() || stream.bad()) throw WorkError("cannot read '" + path + "'");
+  return bytes;
+}
+
+std::string writtenBytes(const std::string& path,
+                         const std::function<void(const std::string& temporary)>& write) {
+  const TemporaryFile temporary(path);
+  write(temporary.path().string());
+  return fileBytes(temporary.path().string());
 }
 
 void writeText(const std::string& path, std::string_view content) {

@@ -13,6 +13,14 @@ namespace pcl_fft_ground::cli {
 /// \throws WorkError naming `path` and the reason, whatever `write` threw
 void writeWhole(const std::string& path, const std::function<void(const std::string& temporary)>& write);
 
+/// The bytes that `write` puts into a file of its own at a temporary path in the folder of `path`, removed
+/// again. \throws what `write` throws, and WorkError naming `path` if there is no file
+std::string writtenBytes(const std::string& path,
+                         const std::function<void(const std::string& temporary)>& write);
+
+/// The bytes of a file. \throws WorkError naming it
+std::string fileBytes(const std::string& path);
+
 /// Writes these bytes as a file, whole or not at all.
 /// \throws WorkError naming the file
 void writeText(const std::string& path, std::string_view content);

@@ -57,6 +57,7 @@ po::options_description commandOptions() {
   add("guess", po::value<std::string>()->value_name("X,Y,Z,YAW"),
       "place [m] and heading [degrees] of MOVING in the coordinates of REFERENCE, in place of the "
       "VIEWPOINTs");
+  addReportOption(options);
   add("json", po::bool_switch(), "print the report as JSON");
   add("quiet", po::bool_switch(), "print nothing but errors");
   add("help,h", po::bool_switch(), "show this text");
@@ -138,6 +139,7 @@ void align(const po::variables_map& values) {
   const Segmenter segmenter =
       makeAlignmentSegmenter(values["method"].as<std::string>(), values, settings.version);
   const std::string directory = values["output"].as<std::string>();
+  const std::string page = reportPath(values, directory);
 
   const bool quiet = values["quiet"].as<bool>();
   Progress progress(quiet);
@@ -153,6 +155,7 @@ void align(const po::variables_map& values) {
   makeDirectory(directory);
   const ordered_json report = makeAlignmentReport(pair, settings, segmenter);
   writeAlignment(directory, pair, report);
+  if (!page.empty()) writeText(page, alignmentPage(directory, pair, report));
   progress.end();
   if (values["json"].as<bool>())
     std::cout << asText(report);

@@ -41,6 +41,10 @@ nlohmann::ordered_json makeAlignmentReport(const AlignedPair& pair, const Alignm
 void writeAlignment(const std::string& directory, const AlignedPair& pair,
                     const nlohmann::ordered_json& report);
 
+/// The page of HTML that shows what came of the pair; alignment.png is in `directory`.
+std::string alignmentPage(const std::string& directory, const AlignedPair& pair,
+                          const nlohmann::ordered_json& report);
+
 /// What a picture of a pair shows.
 struct PairImage {
   const core::ScanSegments& reference;

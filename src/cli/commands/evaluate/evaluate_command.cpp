@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <sstream>
+#include <utility>
 
 #include "command_line.h"
 #include "commands/commands.h"
@@ -12,6 +13,7 @@
 #include "io/output_file.h"
 #include "progress.h"
 #include "reading_options.h"
+#include "report/html_page.h"
 #include "report/report.h"
 
 namespace pcl_fft_ground::cli {
@@ -48,6 +50,7 @@ po::options_description commandOptions() {
   add("pictures", po::value<std::string>()->value_name("DIR"),
       "draw a picture of each cloud to this directory, made if need be: the truth and each method's labels, "
       "errors coloured by kind");
+  addReportOption(options);
   add("json", po::bool_switch(), "print the table as JSON");
   add("quiet", po::bool_switch(), "no progress and no warnings");
   add("help,h", po::bool_switch(), "show this text");
@@ -115,8 +118,39 @@ void writePicture(const std::string& directory, const std::string& name, const L
              [&](const std::string& temporary) { drawEvaluations(temporary, cloud, up, evaluations); });
 }
 
+/// Adds what is to be seen of a cloud to the page; the view is of the first one, by the last method.
+void addToPage(HtmlPage& page, const std::string& path, const LabelledCloud& cloud, const Eigen::Vector3d& up,
+               const std::vector<Evaluation>& evaluations) {
+  page.pictures.push_back({cloud.path + ": the truth, and what each method made of it",
+                           writtenBytes(path, [&](const std::string& temporary) {
+                             drawEvaluations(temporary, cloud, up, evaluations);
+                           })});
+  if (!page.layers.empty()) return;
+  page.layers = evaluationLayers(cloud, up, evaluations.back());
+  page.view_caption =
+      cloud.path + " by " + evaluations.back().row.method + ": what was found, and what was not.";
+}
+
+/// The page of the results. \param page with its pictures, its view and its warnings
+std::string pageText(HtmlPage page, const Names& clouds, const std::vector<Segmenter>& segmenters,
+                     const std::vector<EvaluationRow>& rows) {
+  const nlohmann::ordered_json results = asJson(rows);
+  page.title = "Methods compared on " +
+               (clouds.size() == 1 ? clouds.front() : std::to_string(clouds.size()) + " clouds");
+  nlohmann::ordered_json means = nlohmann::ordered_json::array();
+  for (const auto& [method, values] : results["means"].items()) {
+    means.push_back({{"method", method}});
+    means.back().update(values);
+  }
+  if (clouds.size() > 1) page.tables.push_back(tableOfRecords("Means over the clouds", means));
+  page.tables.push_back(tableOfRecords("Scores", results["results"]));
+  for (const Segmenter& segmenter : segmenters)
+    page.tables.push_back(tableOfParameters("Parameters of " + segmenter.method, segmenter.parameters));
+  return htmlPage(std::move(page));
+}
+
 std::vector<EvaluationRow> evaluateAll(const Names& clouds, std::vector<Segmenter>& segmenters,
-                                       const po::variables_map& values) {
+                                       const po::variables_map& values, HtmlPage& page) {
   const bool quiet = values["quiet"].as<bool>();
   const Names pictures = pictureNames(clouds);
   Progress progress(quiet);
@@ -132,12 +166,16 @@ std::vector<EvaluationRow> evaluateAll(const Names& clouds, std::vector<Segmente
       progress.begin(segmenter.method, placeOf(clouds, n) + ": " + segmenter.method);
       evaluations.push_back(evaluateMethod(cloud, segmenter));
       rows.push_back(evaluations.back().row);
+      for (const std::string& warning : segmenter.filter->getWarnings())
+        page.warnings.push_back(clouds[n] + ": " + segmenter.method + ": " + warning);
       if (!quiet) printWarnings(clouds[n], segmenter);
     }
-    if (values.count("pictures") == 0) continue;
+    const Eigen::Vector3d up = segmenters.front().filter->getUpDirection();
     progress.begin("pictures", placeOf(clouds, n) + ": drawing");
-    writePicture(values["pictures"].as<std::string>(), pictures[n], cloud,
-                 segmenters.front().filter->getUpDirection(), evaluations);
+    if (values.count("pictures") != 0)
+      writePicture(values["pictures"].as<std::string>(), pictures[n], cloud, up, evaluations);
+    if (values.count("report") != 0)
+      addToPage(page, values["report"].as<std::string>(), cloud, up, evaluations);
   }
   return rows;
 }
@@ -160,12 +198,15 @@ void runEvaluate(const std::vector<std::string>& arguments) {
   requireName(values, "csv", "a file");
   requireName(values, "pictures", "a directory");
   std::vector<Segmenter> segmenters = makeSegmenters(values);
-  const std::vector<EvaluationRow> rows = evaluateAll(clouds, segmenters, values);
+  const std::string path = reportPath(values, "");
+  HtmlPage page;
+  const std::vector<EvaluationRow> rows = evaluateAll(clouds, segmenters, values, page);
   if (values["json"].as<bool>())
     std::cout << asJson(rows).dump(2) << '\n';
   else
     printTable(std::cout, rows);
   if (values.count("csv") != 0) writeText(values["csv"].as<std::string>(), asCsv(rows));
+  if (!path.empty()) writeText(path, pageText(page, clouds, segmenters, rows));
 }
 
 }  // namespace pcl_fft_ground::cli

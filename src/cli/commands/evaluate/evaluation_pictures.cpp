@@ -1,8 +1,10 @@
 #include "commands/evaluate/evaluation_pictures.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "pictures/map_sheet.h"
 #include "pictures/top_view.h"
@@ -45,6 +47,13 @@ core::Labels asLabels(const std::vector<int>& truth) {
   std::transform(truth.begin(), truth.end(), labels.begin(),
                  [](int value) { return isScored(value) ? core::Label(value) : core::Label::NEITHER; });
   return labels;
+}
+
+std::string hexColour(const Colour& colour) {
+  char text[8] = "";
+  const auto part = [](double share) { return static_cast<unsigned>(std::lround(255 * share)); };
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", part(colour.red), part(colour.green), part(colour.blue));
+  return text;
 }
 
 std::string percent(double share) {
@@ -101,6 +110,20 @@ void drawEvaluations(const std::filesystem::path& path, const LabelledCloud& clo
   std::vector<LegendEntry> key = legend;
   key.push_back({{1.0, 1.0, 1.0}, "no points"});
   sheet.write(path, key);
+}
+
+std::vector<ViewLayer> evaluationLayers(const LabelledCloud& cloud, const Eigen::Vector3d& up,
+                                        const Evaluation& evaluation) {
+  if (!evaluation.row.failure.empty()) return {};
+  std::vector<ViewLayer> layers;
+  for (const LegendEntry& kind : kKinds) layers.push_back({kind.text, hexColour(kind.colour), {}, {}});
+  const std::vector<int> kinds = kindsOf(cloud.cloud.labels, evaluation.labels);
+  const Eigen::Matrix3f level =
+      Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix().cast<float>();
+  for (const std::size_t n : thinnedIndices(kinds.size(), MOST_VIEW_POINTS))
+    layers[static_cast<std::size_t>(kinds[n])].points.emplace_back(level *
+                                                                   (*cloud.cloud.points)[n].getVector3fMap());
+  return layers;
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "commands/evaluate/cloud_evaluation.h"
+#include "report/html_page.h"
 
 namespace pcl_fft_ground::cli {
 
@@ -24,5 +25,10 @@ std::vector<std::string> pictureNames(const std::vector<std::string>& clouds);
  */
 void drawEvaluations(const std::filesystem::path& path, const LabelledCloud& cloud, const Eigen::Vector3d& up,
                      const std::vector<Evaluation>& evaluations);
+
+/// The points of a cloud by what became of them, up being +z: the layers of a view. None if the method
+/// failed.
+std::vector<ViewLayer> evaluationLayers(const LabelledCloud& cloud, const Eigen::Vector3d& up,
+                                        const Evaluation& evaluation);
 
 }  // namespace pcl_fft_ground::cli

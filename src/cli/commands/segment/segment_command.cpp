@@ -46,6 +46,7 @@ DIR is made if need be and receives
   report.json                            parameters, frame, counts, cut-off, peaks, warnings, scores; the origin that
                                          is subtracted in all of these where coordinates are large
   elevation.png ground.png spectrum.png labels.png segments.png
+--report result.html makes one page of all that.
 Where CLOUD has labels (a field label: 0 ground, 1 object, 2 neither; the classes of LAS; others by --ground-classes
 and --ignore-classes), TPR, TNR and F1 of the objects are printed.
 
@@ -86,6 +87,7 @@ po::options_description commandOptions() {
       "coordinate reference system of ground_surface.tif (the one that a LAS file names)");
   add("raster-resolution", po::value<double>()->value_name("M"),
       "side of a cell of ground_surface.tif [m], above 0 (the cell size)");
+  addReportOption(options);
   add("json", po::bool_switch(), "print the report as JSON");
   add("quiet", po::bool_switch(), "print nothing but errors");
   add("help,h", po::bool_switch(), "show this text");
@@ -224,6 +226,7 @@ void segment(const po::variables_map& values) {
   const ReadOptions reading = readOptions(values);
   const LasClasses classes = lasClasses(values);
   const RasterOptions raster = rasterOptions(values);
+  const std::string page = reportPath(values, directory);
   const bool quiet = values["quiet"].as<bool>();
 
   Progress progress(quiet);
@@ -254,6 +257,7 @@ void segment(const po::variables_map& values) {
       makeReport(input, cloud, segmenter, segmentation, parameters, warnings, progress);
   const std::string text = asText(report);
   writeText(directory + "/report.json", text);
+  if (!page.empty()) writeText(page, segmentPage(directory, cloud, segmentation, report));
   for (const std::string& warning : warnings)
     if (!quiet) std::cerr << "pcl_fft_ground: warning: " << input << ": " << warning << '\n';
   if (values["json"].as<bool>())

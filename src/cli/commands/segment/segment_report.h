@@ -15,6 +15,10 @@ nlohmann::ordered_json makeReport(const std::string& input, const Cloud& cloud, 
                                   const Segmentation& segmentation, nlohmann::ordered_json parameters,
                                   const std::vector<std::string>& warnings, const Progress& progress);
 
+/// The page of HTML that shows the results, those in `directory` and those of the report.
+std::string segmentPage(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation,
+                        const nlohmann::ordered_json& report);
+
 /// The few lines that a person wants to read of a report.
 void printSummary(std::ostream& out, const nlohmann::ordered_json& report);
 

@@ -27,6 +27,11 @@ void printSurvey(std::ostream& out, const SurveyOutcome& outcome, const std::str
  */
 SurveyOutcome pooled(const std::vector<SurveyOutcome>& outcomes);
 
+/// The page of HTML that shows the results, those in the directories of the surveys and those of the reports.
+/// \param outcomes of each survey, then, of several, of all together; likewise the reports
+std::string surveyPage(const SurveyRequest& request, const std::vector<SurveyOutcome>& outcomes,
+                       const std::vector<nlohmann::ordered_json>& reports);
+
 /// Voxels of 2 cm that all sub-maps together occupy: the fewer, the crisper the whole.
 struct SiteCrispness {
   std::size_t navigation = 0;
