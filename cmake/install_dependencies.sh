@@ -31,7 +31,7 @@ packages_of() {
   case "$1" in
     library) echo "libpcl-dev libeigen3-dev libboost-dev libflann-dev" ;;
     tool) echo "libboost-program-options-dev libcairo2-dev nlohmann-json3-dev fonts-dejavu-core" ;;
-    tests) echo "libgtest-dev" ;;
+    tests) echo "libgtest-dev xvfb xauth" ;;
     benchmarks) echo "libbenchmark-dev" ;;
     fftw) echo "libfftw3-dev" ;;
     packages | documentation | style | fresh-system) ;;
