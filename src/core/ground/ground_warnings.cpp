@@ -1,10 +1,13 @@
 #include "pcl_fft_ground/core/ground/ground_warnings.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <sstream>
 
-#include "scan/point_sample.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -47,33 +50,19 @@ struct Squares {
   double area() const { return static_cast<double>(occupied.count()) * side * side; }
 };
 
-Squares squaresOf(const PointsView& points, const Bounds& bounds, double side) {
-  const GridGeometry cells = gridAround(bounds, side);
-  Squares squares{cells.rows, cells.cols, side, Mask::Constant(cells.rows, cells.cols, false)};
-  for (Eigen::Index n = 0; n < points.cols(); ++n) {
-    const Eigen::Array2d at = (points.col(n).head<2>().cast<double>() - cells.origin) / side;
-    squares.occupied(std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.x()), 0, cells.rows - 1),
-                     std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.y()), 0, cells.cols - 1)) = true;
-  }
+/// From the cells that hold points; a square is no smaller than a cell.
+Squares squaresOf(const Mask& cells, const GridGeometry& geometry, const Bounds& bounds, double least_side) {
+  const double side = std::max(least_side, geometry.cell_size);
+  const GridGeometry grid = gridAround(bounds, side);
+  Squares squares{grid.rows, grid.cols, side, Mask::Constant(grid.rows, grid.cols, false)};
+  const auto square = [&](Eigen::Index cell, Eigen::Index last) {  // in which the middle of a cell lies
+    const double middle = (static_cast<double>(cell) + 0.5) * geometry.cell_size;
+    return std::min(static_cast<Eigen::Index>(middle / side), last);
+  };
+  for (Eigen::Index j = 0; j < cells.cols(); ++j)
+    for (Eigen::Index i = 0; i < cells.rows(); ++i)
+      if (cells(i, j)) squares.occupied(square(i, grid.rows - 1), square(j, grid.cols - 1)) = true;
   return squares;
-}
-
-/// Distance of neighbouring points [m], from squares so large that those with points hold several.
-double spacingOf(const PointsView& points, const Bounds& bounds) {
-  constexpr double IN_SQUARE = 8, CLOSE_ENOUGH = 1.15;
-  constexpr int TRIALS = 8;
-  constexpr Eigen::Index ENOUGH = 30000;
-  const Points sample = sampleOf(points, ENOUGH);
-  const auto count = static_cast<double>(sample.cols());
-  const Eigen::Array2d extents = (bounds.high - bounds.low).head<2>();
-  double side =
-      std::max(std::sqrt(extents.prod() * IN_SQUARE / count), extents.maxCoeff() * IN_SQUARE / count);
-  for (int n = 0; n < TRIALS && side > 0; ++n) {
-    const double in_square = count / static_cast<double>(squaresOf(sample, bounds, side).occupied.count());
-    if (in_square <= CLOSE_ENOUGH * IN_SQUARE) break;
-    side *= std::sqrt(IN_SQUARE / in_square);
-  }
-  return side / std::sqrt(IN_SQUARE * static_cast<double>(points.cols()) / count);
 }
 
 /// The longer side [m] of the largest patch of squares that touch.
@@ -102,24 +91,34 @@ double largestPatch(Squares squares) {
   return static_cast<double>(longest) * squares.side;
 }
 
-Points groundPoints(const PointsView& points, const Labels& labels) {
-  Points ground(3, points.cols());
-  Eigen::Index count = 0;
-  for (Eigen::Index n = 0; n < points.cols(); ++n)
-    if (labels[static_cast<std::size_t>(n)] == Label::GROUND) ground.col(count++) = points.col(n);
-  ground.conservativeResize(Eigen::NoChange, count);
-  return ground;
-}
+/// The ground points and the cells that hold them.
+struct GroundSeen {
+  Eigen::Index points = 0;
+  Mask cells;
+};
 
-/// Cells that hold ground.
-Mask groundCells(const Points& ground, const GridGeometry& cells) {
-  Mask mask = Mask::Constant(cells.rows, cells.cols, false);
-  for (Eigen::Index n = 0; n < ground.cols(); ++n) {
-    const Eigen::Array2d at = (ground.col(n).head<2>().cast<double>() - cells.origin) / cells.cell_size;
-    mask(std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.x()), 0, cells.rows - 1),
-         std::clamp<Eigen::Index>(static_cast<Eigen::Index>(at.y()), 0, cells.cols - 1)) = true;
-  }
-  return mask;
+GroundSeen groundSeen(const PointsView& points, const Labels& labels, const GridGeometry& cells) {
+  std::vector<std::atomic<bool>> seen(static_cast<std::size_t>(cells.rows * cells.cols));
+  const double per_metre = 1 / cells.cell_size, x = cells.origin.x(), y = cells.origin.y();
+  const auto rows = static_cast<std::int32_t>(cells.rows), cols = static_cast<std::int32_t>(cells.cols);
+  const auto counts =
+      resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+        Eigen::Index count = 0;
+        for (Eigen::Index n = begin; n < end; ++n) {
+          if (labels[static_cast<std::size_t>(n)] != Label::GROUND) continue;
+          ++count;
+          const float* p = points.data() + 3 * n;
+          const auto i = static_cast<std::int32_t>((static_cast<double>(p[0]) - x) * per_metre);
+          const auto j = static_cast<std::int32_t>((static_cast<double>(p[1]) - y) * per_metre);
+          const std::int32_t cell = std::clamp(i, 0, rows - 1) + std::clamp(j, 0, cols - 1) * rows;
+          seen[static_cast<std::size_t>(cell)].store(true, std::memory_order_relaxed);
+        }
+        return count;
+      });
+  GroundSeen ground{std::accumulate(counts.begin(), counts.end(), Eigen::Index{0}),
+                    Mask(cells.rows, cells.cols)};
+  std::copy(seen.begin(), seen.end(), ground.cells.data());
+  return ground;
 }
 
 /// Share of the cells with points that are farther from ground than a distance [m].
@@ -144,11 +143,13 @@ double shareWithoutGround(const Mask& observed, const Mask& ground, const GridGe
 struct Findings {
   const RobustGround& ground;
   const PointsView& points;
+  const Labels& labels;
   const RobustParameters& parameters;
-  Bounds bounds;
-  Points ground_points;
+  GroundSeen seen;
   double size = 0, widest = 0;  ///< of the largest object and of the scan [m]
-  double spacing = 0;           ///< of the points [m]
+
+  const GridGeometry& cells() const { return ground.elevation.geometry; }
+  const Mask& observed() const { return ground.elevation.observed; }
 };
 
 using Warnings = std::vector<std::string>;
@@ -156,12 +157,12 @@ using Warnings = std::vector<std::string>;
 /// True where it has warned.
 bool checkUnit(const Findings& found, Warnings& warnings) {
   const std::size_t before = warnings.size();
-  const Eigen::Array3d sides = found.bounds.high - found.bounds.low;
+  const Eigen::Array3d sides = found.ground.bounds.high - found.ground.bounds.low;
   const bool given = found.parameters.max_object_size.has_value();
-  if (given && found.size < FEWEST_SPACINGS * found.spacing)
+  if (given && found.size < FEWEST_SPACINGS * found.ground.spacing)
     warnings.push_back(Sentence() << "the largest object, " << found.size
                                   << " m, is not clearly larger than the distance of the points, "
-                                  << found.spacing
+                                  << found.ground.spacing
                                   << " m: are the coordinates in metres? see --max-object-size");
   constexpr double MUCH_HIGHER = 20;
   if (sides.z() > MUCH_HIGHER * found.widest)
@@ -172,8 +173,8 @@ bool checkUnit(const Findings& found, Warnings& warnings) {
 }
 
 void checkCoverage(const Findings& found, Warnings& warnings) {
-  const double side = std::max({found.size / CELLS_TO_OBJECT, found.spacing, found.widest / 4000});
-  const Squares squares = squaresOf(found.points, found.bounds, side);
+  const double side = std::max({found.size / CELLS_TO_OBJECT, found.ground.spacing, found.widest / 4000});
+  const Squares squares = squaresOf(found.observed(), found.cells(), found.ground.bounds, side);
   const double filled = squares.occupied.cast<double>().mean();
   if (filled < LEAST_FILLED)
     warnings.push_back(Sentence() << "only " << 100 * filled
@@ -184,8 +185,9 @@ void checkCoverage(const Findings& found, Warnings& warnings) {
 /// True where it has warned: what is said of little ground is of no use then.
 bool checkPatches(const Findings& found, Warnings& warnings) {
   if (found.widest < LARGE_ENOUGH * found.size || found.size > found.ground.extent) return false;
-  const double side = std::max({found.size / CELLS_TO_OBJECT, 2.5 * found.spacing, found.widest / 4000});
-  const double patch = largestPatch(squaresOf(found.ground_points, found.bounds, side));
+  const double side =
+      std::max({found.size / CELLS_TO_OBJECT, 2.5 * found.ground.spacing, found.widest / 4000});
+  const double patch = largestPatch(squaresOf(found.seen.cells, found.cells(), found.ground.bounds, side));
   if (patch >= PATCH * found.size) return false;
   warnings.push_back(
       Sentence() << "no ground is seen: what was taken for it lies in patches of at most " << patch
@@ -195,11 +197,10 @@ bool checkPatches(const Findings& found, Warnings& warnings) {
   return true;
 }
 
-void checkAmount(const Findings& found, const Mask& ground_cells, Warnings& warnings) {
-  const Mask& observed = found.ground.elevation.observed;
-  const double of_points =
-      static_cast<double>(found.ground_points.cols()) / static_cast<double>(found.points.cols());
-  const double of_cells = static_cast<double>((observed && ground_cells).count()) /
+void checkAmount(const Findings& found, Warnings& warnings) {
+  const Mask& observed = found.observed();
+  const double of_points = static_cast<double>(found.seen.points) / static_cast<double>(found.points.cols());
+  const double of_cells = static_cast<double>((observed && found.seen.cells).count()) /
                           static_cast<double>(std::max<Eigen::Index>(observed.count(), 1));
   const double spread = found.ground.scale;
   const bool is_little =
@@ -212,9 +213,8 @@ void checkAmount(const Findings& found, const Mask& ground_cells, Warnings& warn
                  << found.ground.tolerance << " m counts as ground, see --height-tolerance");
 }
 
-void checkReach(const Findings& found, const Mask& ground_cells, Warnings& warnings) {
-  const double without = shareWithoutGround(found.ground.elevation.observed, ground_cells,
-                                            found.ground.elevation.geometry, found.size);
+void checkReach(const Findings& found, Warnings& warnings) {
+  const double without = shareWithoutGround(found.observed(), found.seen.cells, found.cells(), found.size);
   if (without >= MOST_WITHOUT_GROUND)
     warnings.push_back(Sentence() << 100 * without
                                   << " % of the cells have no ground within the largest object, "
@@ -226,8 +226,9 @@ void checkTolerance(const Findings& found, Warnings& warnings) {
   const double least = NOISE * found.ground.scale, most = found.ground.most_tolerance;
   if (found.parameters.height_tolerance || found.parameters.max_object_size || most <= least) return;
   Eigen::Index hidden = 0;
-  for (Eigen::Index n = 0; n < found.ground_points.cols(); ++n) {
-    const Eigen::Vector3d p = found.ground_points.col(n).cast<double>();
+  for (Eigen::Index n = 0; n < found.points.cols(); ++n) {
+    if (found.labels[static_cast<std::size_t>(n)] != Label::GROUND) continue;
+    const Eigen::Vector3d p = found.points.col(n).cast<double>();
     hidden += p.z() - found.ground.surface.heightAt(p.x(), p.y()) > least ? 1 : 0;
   }
   const double share = static_cast<double>(hidden) / static_cast<double>(found.points.cols());
@@ -253,17 +254,15 @@ std::vector<std::string> warningsAbout(const RobustGround& ground, const PointsV
                                   << " m: are the coordinates in metres, not in kilometres or degrees? see "
                                      "--max-object-size");
   if (level_points.cols() < FEWEST_POINTS) return warnings;
-  Findings found{ground, level_points, parameters, boundsOf(level_points),
-                 groundPoints(level_points, labels)};
+  Findings found{ground, level_points, labels, parameters, {}};
   found.size = ground.max_object_size;
-  found.widest = (found.bounds.high - found.bounds.low).head<2>().maxCoeff();
+  found.widest = (ground.bounds.high - ground.bounds.low).head<2>().maxCoeff();
   if (!(found.widest > 0)) return warnings;
-  found.spacing = spacingOf(level_points, found.bounds);
   if (checkUnit(found, warnings)) return warnings;  // the rest would follow from it
   checkCoverage(found, warnings);
-  const Mask ground_cells = groundCells(found.ground_points, ground.elevation.geometry);
-  if (!checkPatches(found, warnings)) checkAmount(found, ground_cells, warnings);
-  checkReach(found, ground_cells, warnings);
+  found.seen = groundSeen(level_points, labels, found.cells());
+  if (!checkPatches(found, warnings)) checkAmount(found, warnings);
+  checkReach(found, warnings);
   checkTolerance(found, warnings);
   return warnings;
 }

@@ -133,7 +133,10 @@ RobustGround fitRobustGround(const PointsView& points, const Eigen::Isometry3d& 
   ground.max_object_size = plan.max_object_size;
   ground.finest_wavelength = plan.finest_wavelength;
 
-  const SortedPoints sorted(plannedSample(points, plan), plan.bounds, plan.cells);
+  const Points sample = plannedSample(points, plan);
+  ground.bounds = plan.bounds;
+  ground.spacing = spacingOf({sample, points.cols()}, plan.bounds);
+  const SortedPoints sorted(sample, plan.bounds, plan.cells);
   CellPoints cell_points = representativePoints(sorted, plan.statistic);
   ground.elevation = elevationOf(cell_points, plan.cells);
   RobustSurface surface(std::move(cell_points), plan.cells,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ground/robust_regions.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -37,6 +38,24 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> discOf(double radius) {
       if (static_cast<double>(i * i + j * j) <= radius * radius) disc.emplace_back(i, j);
   return disc;
 }
+
+/// Sums of the terms of a quadric and of their products; uu and vv are halves of squares.
+struct Moments {
+  double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
+  double u_uu = 0, v_uu = 0, u_vv = 0, v_vv = 0;
+  double uu_uu = 0, uu_uv = 0, uu_vv = 0, uv_vv = 0, vv_vv = 0;
+
+  Normal products(double count) const {
+    Normal m;
+    m << count, u, v, uu, uv, vv,                         //
+        u, 2 * uu, uv, u_uu, 2 * v_uu, u_vv,              //
+        v, uv, 2 * vv, v_uu, 2 * u_vv, v_vv,              //
+        uu, u_uu, v_uu, uu_uu, uu_uv, uu_vv,              //
+        uv, 2 * v_uu, 2 * u_vv, uu_uv, 4 * uu_vv, uv_vv,  //
+        vv, u_vv, v_vv, uu_vv, uv_vv, vv_vv;
+    return m;
+  }
+};
 
 /// Ground about a point, as sums for a quadric z = a + bu + cv + du2/2 + euv + fv2/2, u and v in cells.
 struct Surroundings {
@@ -81,6 +100,7 @@ class Land {
 
   Surroundings surroundingsOf(Eigen::Index cell, const Mask& ground, double steepest = STEEPEST) const {
     Surroundings result;
+    Moments moments;
     const double per_cell = 1 / map_.cells().cell_size;
     const Eigen::Vector3d& centre = map_.point(cell);
     around(cell, [&](Eigen::Index other) {
@@ -90,12 +110,17 @@ class Land {
       if (isAcrossAStep(offset, steepest)) return;
       ++result.ground;
       const double u = offset.x() * per_cell, v = offset.y() * per_cell, z = offset.z();
+      const double uu = 0.5 * u * u, uv = u * v, vv = 0.5 * v * v;
+      moments.u += u, moments.v += v, moments.uu += uu, moments.uv += uv, moments.vv += vv;
+      moments.u_uu += u * uu, moments.v_uu += v * uu, moments.u_vv += u * vv, moments.v_vv += v * vv;
+      moments.uu_uu += uu * uu, moments.uu_uv += uu * uv, moments.uu_vv += uu * vv;
+      moments.uv_vv += uv * vv, moments.vv_vv += vv * vv;
       Quadric terms;
-      terms << 1, u, v, 0.5 * u * u, u * v, 0.5 * v * v;
-      result.products += terms * terms.transpose();
+      terms << 1, u, v, uu, uv, vv;
       result.heights += z * terms;
       result.squares += z * z;
     });
+    result.products = moments.products(result.ground);
     return result;
   }
 
@@ -209,6 +234,7 @@ Mask followingRegions(const Mask& gained, const std::vector<Verdict>& first, con
 }  // namespace
 
 Mask continuedGround(const CellMap& map, const Mask& ground, double spread, double largest_object) {
+  constexpr Eigen::Index CELLS_AT_A_TIME = 256;
   const Land land(map, spread);
   Mask gained = Mask::Constant(ground.rows(), ground.cols(), false);
   const std::optional<Shape> shape = shapeOf(land, ground, spread, largest_object);
@@ -217,6 +243,7 @@ Mask continuedGround(const CellMap& map, const Mask& ground, double spread, doub
   std::vector<Verdict> first(static_cast<std::size_t>(ground.size()), Verdict::UNDECIDED);
   Mask all = ground, asked = gained;
   std::vector<Eigen::Index> fresh, open;
+  std::vector<Verdict> verdicts;
   for (Eigen::Index n = 0; n < ground.size(); ++n)
     if (ground.data()[n]) fresh.push_back(n);
   for (int round = 0; !fresh.empty(); ++round) {
@@ -238,10 +265,15 @@ Mask continuedGround(const CellMap& map, const Mask& ground, double spread, doub
       else
         land.around(cell, ask);
     fresh.clear();
-    for (const Eigen::Index cell : open) {
-      const Verdict verdict = judge(land, cell, all, *shape);
-      if (round == 0) first[static_cast<std::size_t>(cell)] = verdict;
-      if (verdict == Verdict::GROUND) fresh.push_back(cell);
+    verdicts.resize(open.size());
+    forEachRange(static_cast<Eigen::Index>(open.size()), CELLS_AT_A_TIME,
+                 [&](Eigen::Index begin, Eigen::Index end) {
+                   for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n)
+                     verdicts[n] = judge(land, open[n], all, *shape);
+                 });
+    for (std::size_t n = 0; n < open.size(); ++n) {
+      if (round == 0) first[static_cast<std::size_t>(open[n])] = verdicts[n];
+      if (verdicts[n] == Verdict::GROUND) fresh.push_back(open[n]);
     }
     for (const Eigen::Index cell : open) asked.data()[cell] = false;
     for (const Eigen::Index cell : fresh) all.data()[cell] = gained.data()[cell] = true;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pcl_fft_ground/core/scan/convex_hull.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "scan/hull_filter.h"
 #include "scan/level_frame.h"
 
@@ -71,8 +72,10 @@ Eigen::Isometry3d estimateFrame(const PointsView& points, const PointStatistics&
 Points transformed(Points points, const Eigen::Isometry3d& target_from_source) {
   const Eigen::Matrix3d rotation = target_from_source.linear();
   const Eigen::Vector3d translation = target_from_source.translation();
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    points.col(i) = (rotation * points.col(i).cast<double>() + translation).cast<float>();
+  forEachRange(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+    for (Eigen::Index i = begin; i < end; ++i)
+      points.col(i) = (rotation * points.col(i).cast<double>() + translation).cast<float>();
+  });
   return points;
 }
 

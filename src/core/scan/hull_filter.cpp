@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pcl_fft_ground/core/scan/convex_hull.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "scan/point_block.h"
 
 namespace pcl_fft_ground::core {
@@ -60,14 +61,24 @@ HullFilter::HullFilter(const std::vector<Eigen::Vector2d>& hull, const Horizonta
 }
 
 std::vector<Eigen::Index> HullFilter::outside(const PointsView& points) const {
+  std::vector<Eigen::Index> result;
+  for (const std::vector<Eigen::Index>&part :
+       resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+         return outsideOfPart(points.middleCols(begin, end - begin), begin);
+       }))
+    result.insert(result.end(), part.begin(), part.end());
+  return result;
+}
+
+std::vector<Eigen::Index> HullFilter::outsideOfPart(const PointsView& part, Eigen::Index first) const {
   PointBlock block;
   std::array<std::int32_t, PointBlock::SIZE> strips;
   std::array<float, PointBlock::SIZE> heights;
   const Eigen::Vector3f s = strip_axis_, h = height_axis_;
   const float s_offset = strip_offset_, h_offset = height_offset_;
   std::vector<Eigen::Index> result;
-  for (std::size_t begin = 0; begin < static_cast<std::size_t>(points.cols()); begin += block.count) {
-    block.read(points, begin);
+  for (std::size_t begin = 0; begin < static_cast<std::size_t>(part.cols()); begin += block.count) {
+    block.read(part, begin);
     for (std::size_t n = 0; n < block.count; ++n) {
       const float strip = s[0] * block.x[n] + s[1] * block.y[n] + (s[2] * block.z[n] + s_offset);
       strips[n] = static_cast<std::int32_t>(std::min(std::max(strip, 0.0F), static_cast<float>(STRIPS + 1)));
@@ -75,7 +86,8 @@ std::vector<Eigen::Index> HullFilter::outside(const PointsView& points) const {
     }
     for (std::size_t n = 0; n < block.count; ++n) {
       const auto& [low, high] = inside_[static_cast<std::size_t>(strips[n])];
-      if (!(heights[n] > low && heights[n] < high)) result.push_back(static_cast<Eigen::Index>(begin + n));
+      if (!(heights[n] > low && heights[n] < high))
+        result.push_back(first + static_cast<Eigen::Index>(begin + n));
     }
   }
   return result;

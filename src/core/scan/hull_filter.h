@@ -32,6 +32,9 @@ class HullFilter {
   std::vector<Eigen::Index> outside(const PointsView& points) const;
 
  private:
+  /// \param first column number of the first point of the part
+  std::vector<Eigen::Index> outsideOfPart(const PointsView& part, Eigen::Index first) const;
+
   static constexpr int STRIPS = 512;
   Eigen::Vector3f strip_axis_ = Eigen::Vector3f::Zero(), height_axis_ = Eigen::Vector3f::Zero();
   float strip_offset_ = 0, height_offset_ = 0;

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
+
+#include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -23,6 +26,9 @@ struct Moments {
     sums[0] += x, sums[1] += y, sums[2] += z;
     sums[3] += x * x, sums[4] += x * y, sums[5] += x * z;
     sums[6] += y * y, sums[7] += y * z, sums[8] += z * z;
+  }
+  void add(const Moments& other) {
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += other.sums[k];
   }
 };
 
@@ -80,10 +86,8 @@ IntegerMoments integerMoments(const PointsView& points, const Eigen::Array3d& lo
   return moments;
 }
 
-}  // namespace
-
-Bounds boundsOf(const PointsView& points) {
-  if (points.cols() == 0) return {};
+/// Of at least one point.
+Bounds boundsOfPart(const PointsView& points) {
   FourPoints lows = fourTimes(points.col(0)), highs = lows;
   const Eigen::Index fours = points.cols() / 4 * 4;
   for (Eigen::Index i = 0; i < fours; i += 4) {
@@ -98,6 +102,22 @@ Bounds boundsOf(const PointsView& points) {
     high = high.max(points.col(i).array());
   }
   return {low.cast<double>(), high.cast<double>()};
+}
+
+}  // namespace
+
+Bounds boundsOf(const PointsView& points) {
+  if (points.cols() == 0) return {};
+  const std::vector<Bounds> parts =
+      resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+        return boundsOfPart(points.middleCols(begin, end - begin));
+      });
+  Bounds all = parts.front();
+  for (const Bounds& part : parts) {
+    all.low = all.low.min(part.low);
+    all.high = all.high.max(part.high);
+  }
+  return all;
 }
 
 double wholeOrigin(std::vector<double> coordinates) {
@@ -118,7 +138,12 @@ PointStatistics summarise(const PointsView& points) {
   if (extent == 0) return result;
 
   const double steps = std::ldexp(1.0, quantisationBits(points.cols())) / extent;
-  const IntegerMoments moments = integerMoments(points, low, static_cast<float>(steps));
+  IntegerMoments moments;
+  for (const IntegerMoments& part :
+       resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+         return integerMoments(points.middleCols(begin, end - begin), low, static_cast<float>(steps));
+       }))
+    moments.add(part);
   const auto n = static_cast<double>(points.cols());
   // The casts round down: half a step brings the mean back to the middle.
   result.mean = low + (meanOf(moments, n).array() + 0.5) / steps;

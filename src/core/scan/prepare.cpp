@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pcl_fft_ground/core/scan/far_points.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -15,6 +16,17 @@ void keepColumns(Points& points, const std::vector<Eigen::Index>& kept) {
   points.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(kept.size()));
 }
 
+/// True if no coordinate is infinite, NaN or beyond a measure.
+bool areMeasurable(const Points& points, float beyond) {
+  const std::vector<char> parts =
+      resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) -> char {
+        const auto part = points.middleCols(begin, end - begin).array();
+        // Ten times faster than a look at each: nothing times a number that is not finite is NaN.
+        return (part * 0.0F).sum() == 0.0F && part.maxCoeff() <= beyond && part.minCoeff() >= -beyond;
+      });
+  return std::all_of(parts.begin(), parts.end(), [](char is) { return is != 0; });
+}
+
 /// Leaves out what is not finite, and what is beyond all measure.
 void keepMeasurable(UsablePoints& usable) {
   constexpr float BEYOND_MEASURE = 1e18F;
@@ -22,9 +34,7 @@ void keepMeasurable(UsablePoints& usable) {
   const auto is_measurable = [&](Eigen::Index n) {  // false for NaN, too
     return (points.col(n).array().abs() <= BEYOND_MEASURE).all();
   };
-  Eigen::Index first = 0;
-  while (first < points.cols() && is_measurable(first)) ++first;
-  if (first == points.cols()) return;
+  if (areMeasurable(points, BEYOND_MEASURE)) return;
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
     if (is_measurable(n))
       usable.columns.push_back(n);

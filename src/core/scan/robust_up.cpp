@@ -120,11 +120,11 @@ Eigen::Vector3d normalBelow(const Sheet& sheet, const Points& points, const Eige
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointsView& points, const Eigen::Vector3d& given) {
+std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointSample& scan, const Eigen::Vector3d& given) {
   constexpr Eigen::Index FEWEST_POINTS = 8, ENOUGH = 4000, ENOUGH_TO_START = 1000;
-  const Points sample = sampleOf(points, ENOUGH);
+  const Points sample = sampleOfSample(scan.points, scan.total, ENOUGH);
   if (sample.cols() < FEWEST_POINTS) return std::nullopt;
-  const Points few = sampleOfSample(sample, points.cols(), ENOUGH_TO_START);
+  const Points few = sampleOfSample(sample, scan.total, ENOUGH_TO_START);
   const std::optional<Sheet> rough =
       few.cols() < FEWEST_POINTS ? std::nullopt : thinnestSheet(few, given, thinnestHalf);
   const Sheet half = rough ? concentrated(sample, rough->normal, given, thinnestHalf) : Sheet{given};

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "pcl_fft_ground/core/scan/points.h"
+#include "scan/point_sample.h"
 
 namespace pcl_fft_ground::core {
 
@@ -20,11 +20,12 @@ namespace pcl_fft_ground::core {
  * 0.6 times as thick, and they are flatter than the first half: a pit beside level ground is not. Where no
  * half is flat, as more than half of a narrow strip is objects, the lowest 30 % alone are looked at.
  *
+ * \param scan all points, or at least 4,000 of them by sampleOf()
  * \param given direction towards which the normal is turned, a unit vector
  * \return nothing where neither is a flat sheet (spread along the normal above a tenth of that along the
  * next axis), or where the normal leans by more than 45 degrees from the given direction
  * \note O(n); about 4,000 points are looked at, chosen by their coordinates, not by their order
  */
-std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointsView& points, const Eigen::Vector3d& given);
+std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointSample& scan, const Eigen::Vector3d& given);
 
 }  // namespace pcl_fft_ground::core

@@ -53,7 +53,7 @@ struct Normal {
 };
 
 /// The normal of the flattest half that lies near a direction, where it can be trusted; else that direction.
-Normal normalNear(const Eigen::Vector3d& given, const PointsView& points, const PrincipalAxis& principal) {
+Normal normalNear(const Eigen::Vector3d& given, const PointSample& scan, const PrincipalAxis& principal) {
   constexpr double FLATTEST_VARIANCE_RATIO = 0.04;  // a fifth, squared
   constexpr double MOST_LEANING = 0.7071;           // cosine of 45 degrees
   constexpr double AGREEING = 0.9986;  // cosine of 3 degrees: all points then tell more precisely than half
@@ -61,7 +61,7 @@ Normal normalNear(const Eigen::Vector3d& given, const PointsView& points, const 
   const Eigen::Vector3d& variance = principal.variance;
   const bool trusted = variance[0] <= FLATTEST_VARIANCE_RATIO * variance[1] && up.dot(given) >= MOST_LEANING;
   const Eigen::Vector3d fallback = trusted ? up : given;
-  const std::optional<Eigen::Vector3d> normal = normalOfFlattestHalf(points, given);
+  const std::optional<Eigen::Vector3d> normal = normalOfFlattestHalf(scan, given);
   const bool take_normal = normal && !(trusted && normal->dot(up) >= AGREEING);
   return {take_normal ? *normal : fallback, normal || trusted};
 }
@@ -241,17 +241,16 @@ UpDirection found(const std::vector<Axis>& axes, const std::optional<Sensor>& se
 }
 
 /// Axes other than that near z.
-void lookElsewhere(const PointsView& points, const Points& sample, const PrincipalAxis& principal,
-                   std::vector<Axis>& axes) {
+void lookElsewhere(const PointSample& scan, const PrincipalAxis& principal, std::vector<Axis>& axes) {
   constexpr double SAME = 0.9;     // cosine of 26 degrees
   constexpr double HIGHEST = 0.7;  // ground is broader than it is high
   for (const Eigen::Vector3d& near : {Eigen::Vector3d(Eigen::Vector3d::UnitY()),
                                       Eigen::Vector3d(Eigen::Vector3d::UnitX()), principal.axis}) {
-    const Normal normal = normalNear(near, points, principal);
-    if (heightToBreadth(sample, normal.direction) > HIGHEST) continue;
+    const Normal normal = normalNear(near, scan, principal);
+    if (heightToBreadth(scan.points, normal.direction) > HIGHEST) continue;
     const auto is_same = [&](const Axis& axis) { return std::abs(axis.up.dot(normal.direction)) > SAME; };
     if (std::any_of(axes.begin(), axes.end(), is_same)) continue;
-    Axis axis = axisSeen(sample, near, normal);
+    Axis axis = axisSeen(scan.points, near, normal);
     const bool is_better = isSheet(axis, SMOOTH) && !axes.front().is_trusted;
     axis.prior = axis.prior_opposite = is_better ? OTHER_SHEET : OTHER_AXIS;
     axes.push_back(std::move(axis));
@@ -259,28 +258,27 @@ void lookElsewhere(const PointsView& points, const Points& sample, const Princip
 }
 
 /// The axis near z as found from below, where it is another one: what lies low decides about narrow strips.
-void lookDown(const PointsView& points, const Points& sample, const PrincipalAxis& principal,
-              std::vector<Axis>& axes) {
+void lookDown(const PointSample& scan, const PrincipalAxis& principal, std::vector<Axis>& axes) {
   constexpr double SAME = 0.9994;  // cosine of 2 degrees
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
-  const Normal normal = normalNear(down, points, principal);
+  const Normal normal = normalNear(down, scan, principal);
   if (normal.direction.dot(-axes.front().up) > SAME) return;
-  axes.push_back(axisSeen(sample, down, normal));
-  heedPits(sample, axes.back());
+  axes.push_back(axisSeen(scan.points, down, normal));
+  heedPits(scan.points, axes.back());
   axes.back().prior = OTHER_SIDE;
 }
 
 UpDirection searched(const PointsView& points, const PrincipalAxis& principal,
                      const FrameParameters& parameters) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  const Points sample = sampleOf(points, ENOUGH);
+  const PointSample sample{sampleOf(points, ENOUGH), points.cols()};
   std::vector<Axis> axes;
-  axes.push_back(axisSeen(sample, z, normalNear(z, points, principal)));
-  heedPits(sample, axes.front());
+  axes.push_back(axisSeen(sample.points, z, normalNear(z, sample, principal)));
+  heedPits(sample.points, axes.front());
   const bool is_sheet = axes.front().is_trusted;
   const bool is_clear = is_sheet && axes.front().objects >= CLEAR;
-  if (!is_clear) lookDown(points, sample, principal, axes);
-  if (!is_sheet) lookElsewhere(points, sample, principal, axes);
+  if (!is_clear) lookDown(sample, principal, axes);
+  if (!is_sheet) lookElsewhere(sample, principal, axes);
   std::optional<Sensor> sensor = toldSensor(parameters);
   if (!sensor && !is_clear) sensor = shownSensor(points);
   if (sensor)
@@ -311,8 +309,9 @@ UpDirection estimateUp(const PointsView& points, const PointStatistics& statisti
     return given(principal ? turnedTowards(reference, principal->axis) : reference);
   if (!parameters.up_direction) return searched(points, *principal, parameters);
 
-  const Normal normal = principal ? normalNear(reference, points, *principal) : Normal{reference, true};
-  Axis seen = axisSeen(sampleOf(points, ENOUGH), reference, normal);
+  const PointSample sample{sampleOf(points, ENOUGH), points.cols()};
+  const Normal normal = principal ? normalNear(reference, sample, *principal) : Normal{reference, true};
+  Axis seen = axisSeen(sample.points, reference, normal);
   std::optional<Sensor> sensor = toldSensor(parameters);
   if (!sensor && seen.objects < CLEAR) sensor = shownSensor(points);
   if (sensor) placeSensor(*sensor, seen);

@@ -44,6 +44,8 @@ struct RobustChoice {
 /// The ground of a scan, how sure it is, and what led to it.
 struct RobustGround {
   ElevationGrid elevation;     ///< height of each cell by the statistic
+  Bounds bounds;               ///< of the points in the level frame
+  double spacing = 0;          ///< distance of neighbouring points [m], of a whole scan
   double extent = 0;           ///< smaller horizontal extent of the points [m]
   double max_object_size = 0;  ///< m_u extent, or the size given [m]
   GroundSurface surface;       ///< the ground; supported within the finest wavelength of observed ground
