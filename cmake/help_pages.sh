@@ -17,9 +17,9 @@ commands() {
     /^Commands:/ { listed = 1; next }
     listed && !/^  / { exit }
     listed {
-      split($0, columns, / -o DIR +| -o FILE +|\.\.\. +/)
       words = $1 == "simulate" && $2 == "survey" ? "simulate survey" : $1
-      print words "|" columns[2]
+      sub(/^.*( -o DIR| -o FILE|CLOUD\.\.\.) +/, "")
+      print words "|" $0
     }'
 }
 

@@ -24,7 +24,9 @@ mkdir site && cp survey/submap_0[0-3].pcd site
 # A page that cannot be written is told before the work, and nothing is left of it.
 status=0
 "$program" segment 'a <b>&.pcd' -o other --report nowhere/page.html 2>error || status=$?
-[ "$status" -eq 1 ] && grep -q "nowhere/page.html" error && [ ! -e other ] || fail "a folder that is not there: $(cat error)"
+[ "$status" -eq 1 ] || fail "a folder that is not there gave $status, not 1"
+grep -q "nowhere/page.html" error || fail "a folder that is not there is not told: $(cat error)"
+[ ! -e other ] || fail "a page that could not be written left results"
 
 for page in result/segment evaluate align survey; do
   grep -q '</html>' $page.html || fail "$page.html is not whole"

@@ -2,11 +2,12 @@
 # Makes a bare Debian, copies the checkout's tracked files into it and runs a command of the README there, as somebody
 # does who has just installed that system. Prints the time, the packages and the result.
 #
-#   test/package/fresh_system.sh [--mirror URI] [--keep] debian:bookworm|debian:trixie [demo|tests|packages DIR]
+#   test/package/fresh_system.sh [--mirror URI] [--keep] debian:bookworm|debian:trixie [demo|tests|packages [DIR]]
 #
 #   demo            examples/run_demo.sh (the default)
 #   tests           test/run_tests.sh
-#   packages DIR    test/package/use_packages.sh: installs the .deb files of DIR, made for that system, and uses them
+#   packages DIR    test/package/use_packages.sh: installs the .deb files of DIR, made for that system, and uses them; without
+#                   a folder it makes them there
 #   --mirror URI    Debian's archive; without it that of this machine's apt configuration
 #   --keep          do not delete the system, and say where it is
 #
@@ -118,7 +119,7 @@ case "$task" in
   tests) command=test/run_tests.sh ;;
   packages)
     command=test/package/use_packages.sh
-    ls "$packages"/*.deb >/dev/null 2>&1 || stop $not_understood "no .deb files in '$packages'"
+    [ -z "$packages" ] || ls "$packages"/*.deb >/dev/null 2>&1 || stop $not_understood "no .deb files in '$packages'"
     ;;
   *) stop $not_understood "unknown task '$task' (allowed: demo tests packages)" ;;
 esac

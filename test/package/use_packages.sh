@@ -2,14 +2,23 @@
 # Installs Debian packages of the project, as root, and uses them as their users do: the command with its manual page and
 # completion, the consumer project by CMake and by pkg-config, the Python module where there is one.
 #
-#   test/package/use_packages.sh DIR_OF_PACKAGES
+#   test/package/use_packages.sh [DIR_OF_PACKAGES]     without a folder they are made first, in build/package
 set -euo pipefail
 
-packages=$(cd "$1" && pwd)
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+packages=${1:-$checkout/build/package}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+if [ $# -eq 0 ]; then
+  cd "$checkout"
+  cmake/install_dependencies.sh library tool packages
+  DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends pybind11-dev python3-dev python3-numpy
+  cmake --preset package && cmake --build --preset package --parallel "$(cmake/build_jobs.sh)"
+  (cd build/package && cpack)
+  lintian --allow-root --fail-on error build/package/*.deb
+fi
+packages=$(cd "$packages" && pwd)
 apt-get update -q
 DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "$packages"/*.deb \
   cmake make g++ pkg-config >"$work/apt.log" 2>&1 || { tail -n 30 "$work/apt.log" >&2 && exit 1; }
