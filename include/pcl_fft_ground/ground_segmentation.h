@@ -81,6 +81,12 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   void setHeightTolerance(double tolerance);
   virtual double getHeightTolerance() const { return height_tolerance_.value_or(0.0); }
 
+  /** How many threads share the work: 0 is one for each core. Default 1: that which calls, or those that it
+   * gives by a core::Threads. The results are the same for every number.
+   */
+  void setNumberOfThreads(unsigned threads) { number_of_threads_ = threads; }
+  unsigned getNumberOfThreads() const { return number_of_threads_; }
+
   /// Height of the ground, as the method sees it, in the level frame of the last run; without cells before
   /// the first.
   virtual const core::GroundSurface& getGroundSurface() const = 0;
@@ -167,6 +173,7 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
   core::FrameParameters frame_parameters_;
   bool up_estimation_is_given_ = false;
   std::optional<double> height_tolerance_;
+  unsigned number_of_threads_ = 1;
   UpDirection up_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  ///< of the points that the last run worked on
   Eigen::Isometry3d frame_from_input_ = Eigen::Isometry3d::Identity();

@@ -69,6 +69,12 @@ class ObjectClusterExtraction : public pcl::PCLBase<PointT> {
   void setMaxClusterSize(pcl::uindex_t size) { max_cluster_size_ = size; }
   pcl::uindex_t getMaxClusterSize() const { return max_cluster_size_; }
 
+  /** How many threads share the work: 0 is one for each core. Default 1: that which calls, or those that it
+   * gives by a core::Threads. The results are the same for every number.
+   */
+  void setNumberOfThreads(unsigned threads) { number_of_threads_ = threads; }
+  unsigned getNumberOfThreads() const { return number_of_threads_; }
+
   /** Finds the clusters.
    * \param[out] clusters indices into the input cloud, in the order of setIndices(); larger clusters first,
    * equal ones by their place; old content is discarded. Empty without an input, with an invalid index or
@@ -88,6 +94,7 @@ class ObjectClusterExtraction : public pcl::PCLBase<PointT> {
   std::optional<double> minimum_object_size_;
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();
   std::vector<double> heights_;
+  unsigned number_of_threads_ = 1;
   pcl::uindex_t min_cluster_size_ = 1;
   pcl::uindex_t max_cluster_size_ = std::numeric_limits<pcl::uindex_t>::max();
 };

@@ -107,6 +107,12 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   void setUpDirection(const Eigen::Vector3d& up);
   Eigen::Vector3d getUpDirection() const { return source_describer_.getUpDirection(); }
 
+  /** How many threads share the work: 0 is one for each core. Default 1: that which calls, or those that it
+   * gives by a core::Threads. The results are the same for every number.
+   */
+  void setNumberOfThreads(unsigned threads) { number_of_threads_ = threads; }
+  unsigned getNumberOfThreads() const { return number_of_threads_; }
+
   /** Aligns in double precision and moves no points: align() but for the rounding of its floats.
    * \param target_from_source the initial guess, a rigid motion
    * \return what getAlignment() returns from then on
@@ -154,6 +160,7 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   void alignFrom(const Eigen::Isometry3d& guess);
 
   core::AlignmentParameters parameters_;
+  unsigned number_of_threads_ = 1;
   ScanDescriber<PointSource> source_describer_;
   ScanDescriber<PointTarget> target_describer_;
   core::ScanSegments source_scan_;

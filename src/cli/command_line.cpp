@@ -84,6 +84,20 @@ po::variables_map parseArguments(const std::string& command, const std::vector<s
   }
 }
 
+void addThreadsOption(po::options_description& options) {
+  options.add_options()(
+      "threads", po::value<int>()->default_value(0)->value_name("N"),
+      "threads that share the work, 0 to 1024; 0: one for each core. The results do not depend on it");
+}
+
+unsigned threadsOf(const po::variables_map& values) {
+  constexpr int MOST = 1024;
+  const int threads = values["threads"].as<int>();
+  if (threads < 0 || threads > MOST)
+    throw UsageError("--threads " + std::to_string(threads) + ": allowed are 0 to " + std::to_string(MOST));
+  return static_cast<unsigned>(threads);
+}
+
 void addReportOption(po::options_description& options) {
   options.add_options()(
       "report", po::value<std::string>()->value_name("FILE"),

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "pcl_fft_ground/core/scan/threads.h"
+
 namespace pcl_fft_ground::cli {
 
 /// Columns of a help text, and of the explanations in it.
@@ -23,6 +25,12 @@ boost::program_options::variables_map parseArguments(
     const std::string& command, const std::vector<std::string>& arguments,
     const boost::program_options::options_description& options,
     const boost::program_options::positional_options_description& positional);
+
+/// Adds --threads N, the number of threads that share the work.
+void addThreadsOption(boost::program_options::options_description& options);
+
+/// The number that --threads gives. \throws UsageError beyond 0 to 1024
+unsigned threadsOf(const boost::program_options::variables_map& values);
 
 /// Adds --report FILE.
 void addReportOption(boost::program_options::options_description& options);

@@ -174,5 +174,32 @@ TEST(FFTGroundSegmentation, APointDeepBelowIsAnObjectAndCounted) {
   EXPECT_EQ(std::count(objects.begin(), objects.end(), 2000), 1);
 }
 
+TEST(FFTGroundSegmentation, TheNumberOfThreadsDoesNotMatter) {
+  // So many points, each a little aside of the last time, that there is something to share.
+  const auto cloud = cloudOf<Point>(boxScene().points);
+  const std::size_t once = cloud->size();
+  for (int k = 1; cloud->size() < 150000; ++k)
+    for (std::size_t n = 0; n < once; ++n) {
+      Point p = (*cloud)[n];
+      p.x += 1e-4F * static_cast<float>(k);
+      cloud->push_back(p);
+    }
+  for (const Estimator estimator : {Estimator::ROBUST, Estimator::LOW_PASS}) {
+    SCOPED_TRACE(estimator == Estimator::ROBUST ? "robust" : "low-pass");
+    Segmenter segmenter = segmenterOn(cloud);
+    segmenter.setEstimator(estimator);
+    EXPECT_EQ(segmenter.getNumberOfThreads(), 1U);
+    const pcl::Indices objects = objectsOf(segmenter);
+    EXPECT_FALSE(objects.empty());
+    const Eigen::ArrayXXd surface = segmenter.getGroundSurface().height;
+    for (const unsigned threads : {2U, 3U, 8U, 0U}) {
+      segmenter.setNumberOfThreads(threads);
+      EXPECT_EQ(Segmenter(segmenter).getNumberOfThreads(), threads);
+      EXPECT_EQ(objectsOf(segmenter), objects) << threads;
+      EXPECT_TRUE((segmenter.getGroundSurface().height == surface).all()) << threads;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pcl_fft_ground::test

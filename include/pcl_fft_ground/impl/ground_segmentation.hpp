@@ -4,6 +4,7 @@
 #include <pcl/exceptions.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -15,6 +16,7 @@
 #include <pcl/filters/impl/filter_indices.hpp>
 #include <pcl/impl/pcl_base.hpp>
 
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "pcl_fft_ground/ground_segmentation.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 
@@ -25,14 +27,28 @@ namespace impl {
 template <typename PointT, typename Predicate>
 pcl::Indices indicesWhere(const IndexedPoints<PointT>& points, const core::Labels& labels,
                           const Predicate& takes) {
-  const auto count = static_cast<std::size_t>(std::count_if(labels.begin(), labels.end(), takes));
-  pcl::Indices indices(count + 1);  // one more to write to: half of all branches would be mispredicted
-  std::size_t end = 0;
-  for (std::size_t n = 0; n < labels.size(); ++n) {
-    indices[end] = points.index(n);
-    end += takes(labels[n]) ? 1 : 0;
-  }
-  indices.resize(count);
+  const auto size = static_cast<Eigen::Index>(labels.size());
+  std::vector<std::size_t> places = core::resultsOfRanges(
+      size, core::POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) -> std::size_t {
+        return static_cast<std::size_t>(std::count_if(labels.begin() + begin, labels.begin() + end, takes));
+      });
+  std::size_t count = 0;
+  for (std::size_t& place : places) count += std::exchange(place, count);
+  pcl::Indices indices(count);
+  core::forEachRange(size, core::POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+    std::array<pcl::index_t, 256> taken;  // half of all branches would be mispredicted
+    auto to = indices.begin() +
+              static_cast<std::ptrdiff_t>(places[static_cast<std::size_t>(begin / core::POINTS_AT_A_TIME)]);
+    for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end);) {
+      const std::size_t block_end = std::min(n + taken.size(), static_cast<std::size_t>(end));
+      std::size_t in_block = 0;
+      for (; n < block_end; ++n) {
+        taken[in_block] = points.index(n);
+        in_block += takes(labels[n]) ? 1 : 0;
+      }
+      to = std::copy_n(taken.begin(), in_block, to);
+    }
+  });
   return indices;
 }
 
@@ -52,6 +68,7 @@ GroundSegmentation<PointT>::GroundSegmentation(const GroundSegmentation& other)
       frame_parameters_(other.frame_parameters_),
       up_estimation_is_given_(other.up_estimation_is_given_),
       height_tolerance_(other.height_tolerance_),
+      number_of_threads_(other.number_of_threads_),
       up_(other.up_),
       origin_(other.origin_),
       frame_from_input_(other.frame_from_input_),
@@ -69,6 +86,7 @@ GroundSegmentation<PointT>& GroundSegmentation<PointT>::operator=(const GroundSe
   frame_parameters_ = other.frame_parameters_;
   up_estimation_is_given_ = other.up_estimation_is_given_;
   height_tolerance_ = other.height_tolerance_;
+  number_of_threads_ = other.number_of_threads_;
   up_ = other.up_;
   origin_ = other.origin_;
   frame_from_input_ = other.frame_from_input_;
@@ -84,6 +102,7 @@ void GroundSegmentation<PointT>::segment(pcl::PointIndices& ground, pcl::PointIn
   // Without indices PCLBase would only make a list of all points, which nobody reads.
   const bool all_points = input_ && !indices_;
   if (!all_points && !initCompute()) return;
+  const core::Threads threads(number_of_threads_);
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   const core::Labels labels = computeLabels();
   ground.header = objects.header = input_->header;
@@ -174,6 +193,7 @@ void GroundSegmentation<PointT>::requireLength(const std::string& parameter, dou
 
 template <typename PointT>
 void GroundSegmentation<PointT>::applyFilter(pcl::Indices& indices) {
+  const core::Threads threads(number_of_threads_);
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   const core::Labels labels = computeLabels();
   const core::Label kept = keptLabel();
@@ -187,6 +207,7 @@ void GroundSegmentation<PointT>::applyFilter(pcl::Indices& indices) {
 
 template <typename PointT>
 void GroundSegmentation<PointT>::applyFilter(PointCloud& output) {
+  const core::Threads threads(number_of_threads_);
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   const core::Labels labels = computeLabels();
   const core::Label kept = keptLabel();

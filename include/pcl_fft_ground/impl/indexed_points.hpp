@@ -13,6 +13,7 @@
 
 #include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "pcl_fft_ground/core/scan/prepare.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "pcl_fft_ground/impl/cloud_view.hpp"
 
 namespace pcl_fft_ground::impl {
@@ -60,8 +61,10 @@ class IndexedPoints {
   /// All points in the order of the list, finite or not, less an origin: that of origin().
   core::RawPoints rawPoints(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) const {
     core::RawPoints points(3, static_cast<Eigen::Index>(size()));
-    for (std::size_t n = 0; n < size(); ++n)
-      points.col(static_cast<Eigen::Index>(n)) = cloud_.local(position(n), origin);
+    core::forEachRange(points.cols(), core::POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+      for (Eigen::Index n = begin; n < end; ++n)
+        points.col(n) = cloud_.local(position(static_cast<std::size_t>(n)), origin);
+    });
     return points;
   }
 

@@ -10,6 +10,7 @@
 #include <pcl/impl/pcl_base.hpp>
 
 #include "pcl_fft_ground/core/scan/frame.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/object_cluster_extraction.h"
 
@@ -51,6 +52,7 @@ template <typename PointT>
 void ObjectClusterExtraction<PointT>::extract(std::vector<pcl::PointIndices>& clusters) {
   clusters.clear();
   if (!initCompute()) return;
+  const core::Threads threads(number_of_threads_);
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   if (!points.areValid()) {
     PCL_ERROR("[pcl_fft_ground::ObjectClusterExtraction] the indices reach beyond the cloud of %zu points\n",

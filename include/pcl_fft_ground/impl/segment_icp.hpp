@@ -9,6 +9,7 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "pcl_fft_ground/impl/lazy_kd_tree.hpp"
 #include "pcl_fft_ground/impl/scan_describer.hpp"
 #include "pcl_fft_ground/segment_icp.h"
@@ -124,6 +125,7 @@ std::string SegmentICP<PointSource, PointTarget>::describeScans() {
 
 template <typename PointSource, typename PointTarget>
 void SegmentICP<PointSource, PointTarget>::alignFrom(const Eigen::Isometry3d& guess) {
+  const core::Threads threads(number_of_threads_);
   const Eigen::Isometry3d level_from_input(Eigen::Quaterniond(source_describer_.levelFromInput()));
   alignment_ = core::Alignment();
   alignment_.reference_from_moving = guess;

@@ -8,6 +8,7 @@
 
 #include <pcl/impl/pcl_base.hpp>
 
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/voxel_cluster_extraction.h"
@@ -29,6 +30,7 @@ template <typename PointT>
 void VoxelClusterExtraction<PointT>::extract(std::vector<pcl::PointIndices>& clusters) {
   clusters.clear();
   if (!initCompute()) return;
+  const core::Threads threads(number_of_threads_);
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   if (!points.areValid()) {
     PCL_ERROR("[pcl_fft_ground::VoxelClusterExtraction] the indices reach beyond the cloud of %zu points\n",

@@ -23,8 +23,7 @@ Dct<Number>::Dct(Eigen::Index length)
       base_(length),
       scales_(Line::Constant(length, static_cast<Number>(std::sqrt(2.0 / static_cast<double>(length))))),
       cosines_(length),
-      sines_(length),
-      scratch_(static_cast<std::size_t>(length)) {
+      sines_(length) {
   scales_[0] = static_cast<Number>(std::sqrt(1.0 / static_cast<double>(length)));
   while (base_ % 2 == 0 && base_ > LARGEST_EVEN_BASE) base_ /= 2;
   for (Eigen::Index n = length; n > base_; n /= 2)
@@ -143,15 +142,15 @@ void Dct<Number>::fourth(Lanes* values, Lanes* scratch, Eigen::Index length) con
 }
 
 template <typename Number>
-void Dct<Number>::forward(Lanes* values) {
-  second(values, scratch_.data(), length_);
+void Dct<Number>::forward(Lanes* values, Lanes* scratch) const {
+  second(values, scratch, length_);
   for (Eigen::Index k = 0; k < length_; ++k) values[k] *= scales_[k];
 }
 
 template <typename Number>
-void Dct<Number>::inverse(Lanes* values) {
+void Dct<Number>::inverse(Lanes* values, Lanes* scratch) const {
   for (Eigen::Index k = 0; k < length_; ++k) values[k] *= scales_[k];
-  secondTransposed(values, scratch_.data(), length_);
+  secondTransposed(values, scratch, length_);
 }
 
 template class Dct<float>;

@@ -11,7 +11,6 @@ namespace pcl_fft_ground::core {
  * N): the line continues evenly beyond its ends, without wrap-around. Even lengths are halved again and
  * again by rotations (Plonka and Tasche 2005), which keep the precision whatever the length; the rest m is
  * summed up: O(N (m + log N)). Several lines go through side by side.
- * An object holds its scratch space: one per thread.
  */
 template <typename Number>
 class Dct {
@@ -24,10 +23,11 @@ class Dct {
   Eigen::Index length() const { return length_; }
 
   /// Transforms lines in place: `values` are their first values, their second ones and so on.
-  void forward(Lanes* values);
+  /// \param scratch as long as the values
+  void forward(Lanes* values, Lanes* scratch) const;
 
   /// Undoes forward().
-  void inverse(Lanes* values);
+  void inverse(Lanes* values, Lanes* scratch) const;
 
  private:
   using Line = Eigen::Array<Number, Eigen::Dynamic, 1>;
@@ -44,7 +44,6 @@ class Dct {
   Line scales_;                 // c_k
   Line cosines_, sines_;        // of pi (2 i + 1) / (4 n), at n / 2 + i, for every halved n
   Eigen::Array<Number, Eigen::Dynamic, Eigen::Dynamic> second_, fourth_;  // (i, k) of the base
-  std::vector<Lanes> scratch_;
 };
 
 /// Orthonormal cosine transform of grids of one size, in place.
@@ -56,22 +55,21 @@ class Dct2d {
   Dct2d(Eigen::Index rows, Eigen::Index cols);
 
   /// Coefficient (k, l) belongs to k half waves along the rows and l along the columns.
-  void forward(Grid& grid);
+  void forward(Grid& grid) const;
 
   /// Undoes forward().
-  void inverse(Grid& coefficients);
+  void inverse(Grid& coefficients) const;
 
  private:
   using Lanes = typename Dct<Number>::Lanes;
-  using Transform = void (Dct<Number>::*)(Lanes*);
+  using Transform = void (Dct<Number>::*)(Lanes*, Lanes*) const;
 
-  void eachColumn(Grid& grid, Transform transform);
-  void eachRow(Grid& grid, Transform transform);
+  void eachColumn(Grid& grid, Transform transform) const;
+  void eachRow(Grid& grid, Transform transform) const;
   template <int LinesAtCompileTime, typename Lines>
-  void apply(Dct<Number>& dct, Transform transform, Lines&& lines);
+  static void apply(const Dct<Number>& dct, Transform transform, std::vector<Lanes>& scratch, Lines&& lines);
 
   Dct<Number> along_rows_, along_cols_;
-  std::vector<Lanes> lines_;
 };
 
 /// The smallest length from `length` on that is transformed fast: its odd factor is 15 at the most.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "pcl_fft_ground/core/scan/threads.h"
+
 namespace pcl_fft_ground::core {
 namespace {
 
@@ -81,11 +83,11 @@ Labels labelByHeight(const PointsView& points, const GroundSurface& surface, dou
   const BilinearSampler ground(surface);
   const std::vector<HeightBand> bands = ground.bands(tolerance);
   Labels labels(static_cast<std::size_t>(points.cols()));
-  std::array<Eigen::Index, 512> undecided;
-  constexpr auto BLOCK = static_cast<Eigen::Index>(undecided.size());
-  for (Eigen::Index begin = 0; begin < points.cols(); begin += BLOCK) {
+  constexpr Eigen::Index BLOCK = 512;
+  const auto labelBlock = [&](Eigen::Index begin, Eigen::Index end) {
+    std::array<Eigen::Index, BLOCK> undecided;
     std::size_t count = 0;
-    for (Eigen::Index n = begin; n < std::min(begin + BLOCK, points.cols()); ++n) {
+    for (Eigen::Index n = begin; n < end; ++n) {
       const HeightBand band = bands[ground.pairAt(points.col(n).head<2>().cast<double>())];
       const float height = points(2, n);
       labels[static_cast<std::size_t>(n)] = height > band.high ? Label::OBJECT : Label::GROUND;
@@ -97,7 +99,10 @@ Labels labelByHeight(const PointsView& points, const GroundSurface& surface, dou
       const bool object = p.z() - ground(p.head<2>()) > tolerance;
       labels[static_cast<std::size_t>(undecided[u])] = object ? Label::OBJECT : Label::GROUND;
     }
-  }
+  };
+  forEachRange(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+    for (; begin < end; begin += BLOCK) labelBlock(begin, std::min(begin + BLOCK, end));
+  });
   return labels;
 }
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+
+#include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -12,13 +15,14 @@ std::vector<std::int32_t> cellsOf(const PointsView& points, const GridGeometry& 
   const double per_metre = 1 / cells.cell_size, x = cells.origin.x(), y = cells.origin.y();
   const auto rows = static_cast<std::int32_t>(cells.rows), cols = static_cast<std::int32_t>(cells.cols);
   std::vector<std::int32_t> result(static_cast<std::size_t>(points.cols()));
-  const float* p = points.data();
-  for (std::int32_t& cell : result) {
-    const auto i = static_cast<std::int32_t>((static_cast<double>(p[0]) - x) * per_metre);
-    const auto j = static_cast<std::int32_t>((static_cast<double>(p[1]) - y) * per_metre);
-    cell = std::min(i, rows - 1) + std::min(j, cols - 1) * rows;
-    p += 3;
-  }
+  forEachRange(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+    const float* p = points.data() + 3 * begin;
+    for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n, p += 3) {
+      const auto i = static_cast<std::int32_t>((static_cast<double>(p[0]) - x) * per_metre);
+      const auto j = static_cast<std::int32_t>((static_cast<double>(p[1]) - y) * per_metre);
+      result[n] = std::min(i, rows - 1) + std::min(j, cols - 1) * rows;
+    }
+  });
   return result;
 }
 
@@ -44,17 +48,56 @@ const float* lowestPoint(const float* begin, const float* end) {
   return end - begin >= 3 * ENOUGH_TO_DROP_ONE ? second : first;
 }
 
-CellPoints lowestPoints(const SortedPoints& points) {
+/// For about as many points as a thread works on at a time.
+Eigen::Index cellsAtATime(const SortedPoints& points) {
+  const auto cells = static_cast<Eigen::Index>(points.size());
+  return std::max<Eigen::Index>(
+      1, cells * POINTS_AT_A_TIME / std::max<Eigen::Index>(points.positions().cols(), cells));
+}
+
+/// Calls work(n) for every cell that holds points.
+template <typename Work>
+void forEachCell(const SortedPoints& points, const Work& work) {
+  forEachRange(static_cast<Eigen::Index>(points.size()), cellsAtATime(points),
+               [&](Eigen::Index begin, Eigen::Index end) {
+                 for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n)
+                   work(n);
+               });
+}
+
+/// The points that find(n) has for the cells that hold points, nothing for some of them.
+template <typename Find>
+CellPoints pointsOfCells(const SortedPoints& points, const Find& find) {
+  const auto parts = resultsOfRanges(static_cast<Eigen::Index>(points.size()), cellsAtATime(points),
+                                     [&](Eigen::Index begin, Eigen::Index end) {
+                                       CellPoints part;
+                                       part.positions.reserve(static_cast<std::size_t>(end - begin));
+                                       part.cells.reserve(static_cast<std::size_t>(end - begin));
+                                       for (auto n = static_cast<std::size_t>(begin);
+                                            n < static_cast<std::size_t>(end); ++n) {
+                                         const std::optional<Eigen::Vector3d> found = find(n);
+                                         if (!found) continue;
+                                         part.positions.push_back(*found);
+                                         part.cells.push_back(points.cell(n));
+                                       }
+                                       return part;
+                                     });
   CellPoints result;
   result.positions.reserve(points.size());
   result.cells.reserve(points.size());
-  const float* positions = points.positions().data();
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const float* lowest = lowestPoint(positions + 3 * points.begin(n), positions + 3 * points.end(n));
-    result.positions.push_back(Eigen::Map<const Eigen::Vector3f>(lowest).cast<double>());
-    result.cells.push_back(points.cell(n));
+  for (const CellPoints& part : parts) {
+    result.positions.insert(result.positions.end(), part.positions.begin(), part.positions.end());
+    result.cells.insert(result.cells.end(), part.cells.begin(), part.cells.end());
   }
   return result;
+}
+
+CellPoints lowestPoints(const SortedPoints& points) {
+  const float* positions = points.positions().data();
+  return pointsOfCells(points, [&](std::size_t n) -> std::optional<Eigen::Vector3d> {
+    const float* lowest = lowestPoint(positions + 3 * points.begin(n), positions + 3 * points.end(n));
+    return Eigen::Map<const Eigen::Vector3f>(lowest).cast<double>();
+  });
 }
 
 /// The tangent of a surface amid a cell: within a cell the two are the same.
@@ -108,11 +151,8 @@ CellPoints meanPoints(const SortedPoints& points, double low, double high, const
   const Eigen::Array3d steps_per_metre =
       Eigen::Array3d(0x1p20, 0x1p20, 0x1p30) /
       Eigen::Array3d(points.cells().cell_size, points.cells().cell_size, height);
-  CellPoints result;
-  result.positions.reserve(points.size());
-  result.cells.reserve(points.size());
   const float* positions = points.positions().data();
-  for (std::size_t n = 0; n < points.size(); ++n) {
+  return pointsOfCells(points, [&](std::size_t n) -> std::optional<Eigen::Vector3d> {
     const Tangent tangent = tangent_of(n);
     const Eigen::Vector2d corner = points.corner(n);
     PointMean mean({corner.x(), corner.y(), points.bounds().low.z()}, steps_per_metre);
@@ -121,11 +161,8 @@ CellPoints meanPoints(const SortedPoints& points, double low, double high, const
       const double above = tangent.heightAbove(p);
       if (above >= low && above <= high) mean.add(p);
     }
-    if (mean.isEmpty()) continue;
-    result.positions.push_back(mean.mean());
-    result.cells.push_back(points.cell(n));
-  }
-  return result;
+    return mean.isEmpty() ? std::nullopt : std::optional<Eigen::Vector3d>(mean.mean());
+  });
 }
 
 Eigen::Vector2d centreOf(const SortedPoints& points, std::size_t n) {
@@ -201,13 +238,13 @@ std::vector<float> heightsIn(const SortedPoints& points, const GroundBand& band,
 
 Eigen::ArrayXXf lowestHeights(const SortedPoints& points, const GroundBand& band) {
   Eigen::ArrayXXf lowest = Eigen::ArrayXXf::Zero(points.cells().rows, points.cells().cols);
-  for (std::size_t n = 0; n < points.size(); ++n) {
+  forEachCell(points, [&](std::size_t n) {
     const Tangent tangent(band, centreOf(points, n));
     double least = std::numeric_limits<double>::infinity();
     for (Eigen::Index k = points.begin(n); k < points.end(n); ++k)
       least = std::min(least, tangent.heightAbove(points.positions().data() + 3 * k));
     lowest.data()[points.cell(n)] = static_cast<float>(least);
-  }
+  });
   return lowest;
 }
 

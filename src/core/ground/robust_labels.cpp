@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pcl_fft_ground/core/ground/robust_ground.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "scan/point_block.h"
 
 namespace pcl_fft_ground::core {
@@ -111,20 +112,29 @@ RobustLabels labelRobust(const PointsView& points, const RobustGround& ground) {
   const PatchGrid grid(ground);
   const std::vector<float> reaches = reachesOf(ground, grid);
   const auto deepest = static_cast<float>(-ground.depth_tolerance);
-  PointBlock block;
-  Places places;
-  for (std::size_t begin = 0; begin < result.labels.size(); begin += block.count) {
-    block.read(points, begin);
-    grid.locate(block, places);
-    for (std::size_t n = 0; n < block.count; ++n) {
-      const Patch& patch = grid.patch(places.patches[n]);
-      const float height = block.z[n] - patch.heightAt(places.u[n], places.v[n]);
-      const bool below = height < deepest - patch.lean;
-      const float highest = reaches[static_cast<std::size_t>(places.cells[n])] * patch.stretch + patch.lean;
-      result.labels[begin + n] = below | (height > highest) ? Label::OBJECT : Label::GROUND;
-      result.below += below ? 1 : 0;
+  const auto labelPart = [&](const PointsView& part, Label* labels) {
+    PointBlock block;
+    Places places;
+    std::size_t count_below = 0;
+    for (std::size_t begin = 0; begin < static_cast<std::size_t>(part.cols()); begin += block.count) {
+      block.read(part, begin);
+      grid.locate(block, places);
+      for (std::size_t n = 0; n < block.count; ++n) {
+        const Patch& patch = grid.patch(places.patches[n]);
+        const float height = block.z[n] - patch.heightAt(places.u[n], places.v[n]);
+        const bool below = height < deepest - patch.lean;
+        const float highest = reaches[static_cast<std::size_t>(places.cells[n])] * patch.stretch + patch.lean;
+        labels[begin + n] = below | (height > highest) ? Label::OBJECT : Label::GROUND;
+        count_below += below ? 1 : 0;
+      }
     }
-  }
+    return count_below;
+  };
+  for (const std::size_t below :
+       resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+         return labelPart(points.middleCols(begin, end - begin), result.labels.data() + begin);
+       }))
+    result.below += below;
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ground/robust_start.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -66,17 +67,27 @@ void RobustSurface::takeSamples(double per_cell) {
   findFootings();
 }
 
+template <typename Work>
+void RobustSurface::forEachSample(const Work& work) const {
+  constexpr Eigen::Index SAMPLES_AT_A_TIME = 1 << 13;
+  forEachRange(static_cast<Eigen::Index>(samples_.size()), SAMPLES_AT_A_TIME,
+               [&](Eigen::Index begin, Eigen::Index end) {
+                 for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n)
+                   work(n);
+               });
+}
+
 void RobustSurface::findFootings() {
-  footings_.clear();
-  footings_.reserve(samples_.size());
-  for (const Eigen::Vector3d& p : samples_) footings_.push_back(grid_.at(p.x(), p.y()));
+  footings_.resize(samples_.size());
+  forEachSample([&](std::size_t n) { footings_[n] = grid_.at(samples_[n].x(), samples_[n].y()); });
 }
 
 void RobustSurface::findResiduals() {
   residuals_.resize(static_cast<Eigen::Index>(samples_.size()));
-  for (std::size_t n = 0; n < samples_.size(); ++n)
+  forEachSample([&](std::size_t n) {
     residuals_[static_cast<Eigen::Index>(n)] =
         static_cast<float>(samples_[n].z() - grid_.value(heights(), footings_[n]));
+  });
 }
 
 void RobustSurface::startBelowObjects(double wavelength) {
@@ -119,8 +130,10 @@ double RobustSurface::updateWeights() {
   weights_.swap(last_weights_);
   weights_.resize(residuals_.size());
   const auto centre = static_cast<float>(spread_.centre), per_scale = static_cast<float>(1 / spread_.scale);
-  for (Eigen::Index n = 0; n < weights_.size(); ++n)
-    weights_[n] = weightOf((residuals_[n] - centre) * per_scale);
+  forEachSample([&](std::size_t n) {
+    const auto k = static_cast<Eigen::Index>(n);
+    weights_[k] = weightOf((residuals_[k] - centre) * per_scale);
+  });
   const float sum = last_weights_.sum();
   return sum > 0 ? static_cast<double>((weights_ - last_weights_).abs().sum() / sum) : 1;
 }

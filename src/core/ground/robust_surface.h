@@ -48,6 +48,8 @@ class RobustSurface {
  private:
   void changeScale(double wavelength);
   void takeSamples(double per_cell);
+  template <typename Work>
+  void forEachSample(const Work& work) const;
   void findFootings();
   void findResiduals();
   void estimateSpread(double least, double most);

@@ -116,7 +116,8 @@ class Threads::Pool {
 
 Threads::Threads(unsigned number) : outer_(Pool::current()) {
   if (number == 0) number = std::max(std::thread::hardware_concurrency(), 1U);
-  if (number > 1) pool_ = std::make_unique<Pool>(number);
+  if (number == 1) return;
+  pool_ = std::make_unique<Pool>(number);
   Pool::current() = pool_.get();
 }
 

@@ -14,12 +14,13 @@ namespace pcl_fft_ground::core {
  * it calls them; without one they use that thread alone.
  *
  * Threads are started when there is enough for them to do and end with the object. Results are the same, bit
- * for bit, for every number. Of two objects in one thread the younger one counts; what a started thread calls
- * does not start others.
+ * for bit, for every number. Of two objects in one thread the younger one counts, unless its number is 1;
+ * what a started thread calls does not start others.
  */
 class PCL_FFT_GROUND_CORE_EXPORT Threads {
  public:
-  /// \param number 0: one for each core; fewer are used where the system does not give as many
+  /// \param number 0: one for each core; 1: no more than an older object of this thread gives; fewer are used
+  /// where the system does not give as many
   explicit Threads(unsigned number);
   ~Threads();
   Threads(const Threads&) = delete;

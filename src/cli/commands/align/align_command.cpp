@@ -57,6 +57,7 @@ po::options_description commandOptions() {
   add("guess", po::value<std::string>()->value_name("X,Y,Z,YAW"),
       "place [m] and heading [degrees] of MOVING in the coordinates of REFERENCE, in place of the "
       "VIEWPOINTs");
+  addThreadsOption(options);
   addReportOption(options);
   add("json", po::bool_switch(), "print the report as JSON");
   add("quiet", po::bool_switch(), "print nothing but errors");
@@ -132,6 +133,7 @@ void align(const po::variables_map& values) {
   const std::vector<std::string> clouds = values.count("cloud") == 0
                                               ? std::vector<std::string>()
                                               : values["cloud"].as<std::vector<std::string>>();
+  const core::Threads threads(threadsOf(values));
   if (clouds.size() != 2) throw UsageError("align: allowed are two scans, REFERENCE and MOVING");
   if (values.count("output") == 0 || values["output"].as<std::string>().empty())
     throw UsageError("align: no output given: name a folder by -o DIR");

@@ -50,6 +50,7 @@ po::options_description commandOptions() {
   add("pictures", po::value<std::string>()->value_name("DIR"),
       "draw a picture of each cloud to this directory, made if need be: the truth and each method's labels, "
       "errors coloured by kind");
+  addThreadsOption(options);
   addReportOption(options);
   add("json", po::bool_switch(), "print the table as JSON");
   add("quiet", po::bool_switch(), "no progress and no warnings");
@@ -197,6 +198,7 @@ void runEvaluate(const std::vector<std::string>& arguments) {
   const Names clouds = chosenClouds(values);
   requireName(values, "csv", "a file");
   requireName(values, "pictures", "a directory");
+  const core::Threads threads(threadsOf(values));
   std::vector<Segmenter> segmenters = makeSegmenters(values);
   const std::string path = reportPath(values, "");
   HtmlPage page;

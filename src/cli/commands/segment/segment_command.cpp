@@ -87,6 +87,7 @@ po::options_description commandOptions() {
       "coordinate reference system of ground_surface.tif (the one that a LAS file names)");
   add("raster-resolution", po::value<double>()->value_name("M"),
       "side of a cell of ground_surface.tif [m], above 0 (the cell size)");
+  addThreadsOption(options);
   addReportOption(options);
   add("json", po::bool_switch(), "print the report as JSON");
   add("quiet", po::bool_switch(), "print nothing but errors");
@@ -221,6 +222,7 @@ std::vector<std::string> warningsOf(const Cloud& cloud, const Segmenter& segment
 void segment(const po::variables_map& values) {
   const std::string input = required(values, "cloud", std::string("cloud given: name a ") + CLOUD_FILES);
   const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
+  const core::Threads threads(threadsOf(values));
   Segmenter segmenter = makeSegmenter(values["method"].as<std::string>(), values);
   ClusterParameters clusters = clusterParameters(values);
   const ReadOptions reading = readOptions(values);

@@ -78,6 +78,7 @@ po::options_description describeOptions(Request& request) {
       "above the ground and the share of it that is seen from above");
   add("quiet", po::bool_switch(&request.quiet), "print nothing");
   add("json", po::bool_switch(&request.json), "print the summary as JSON");
+  addThreadsOption(options);
   add("help,h", po::bool_switch(&request.help), "show this text");
   return options;
 }
@@ -89,13 +90,13 @@ core::SceneKind sceneNamed(const std::string& name) {
   throw UsageError("simulate: scene '" + name + "': allowed is wreck, pipes or reef, or survey");
 }
 
-void parse(const std::vector<std::string>& arguments, const po::options_description& options,
-           Request& request) {
+po::variables_map parse(const std::vector<std::string>& arguments, const po::options_description& options,
+                        Request& request) {
   po::options_description all;
   all.add(options).add_options()("scene", po::value(&request.scene));
   po::positional_options_description positional;
   positional.add("scene", 1);
-  parseArguments("simulate", arguments, all, positional);
+  return parseArguments("simulate", arguments, all, positional);
 }
 
 void checkComplete(Request& request) {
@@ -170,11 +171,12 @@ void runSimulate(const std::vector<std::string>& arguments) {
   }
   Request request;
   const po::options_description options = describeOptions(request);
-  parse(arguments, options, request);
+  const po::variables_map values = parse(arguments, options, request);
   if (request.help) {
     std::cout << help_before << options << help_after;
     return;
   }
+  const core::Threads threads(threadsOf(values));
   checkComplete(request);
   const core::SimulatedScan scan = simulate(request.parameters);
   writeSimulatedScan(request.output, scan, scan.world_from_scan,

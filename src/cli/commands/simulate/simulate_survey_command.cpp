@@ -6,6 +6,8 @@
 #include <set>
 #include <system_error>
 
+#include <mutex>
+
 #include "command_line.h"
 #include "commands/simulate/simulated_scan.h"
 #include "errors.h"
@@ -75,6 +77,7 @@ po::options_description describeOptions(Request& request) {
       "largest error of its heading [degrees]: 0 to 45; bare: 2");
   add("quiet", po::bool_switch(&request.quiet), "print nothing");
   add("json", po::bool_switch(&request.json), "print the summary as JSON");
+  addThreadsOption(options);
   add("help,h", po::bool_switch(&request.help), "show this text");
   return options;
 }
@@ -137,13 +140,18 @@ void removeEarlierSurvey(const std::string& folder) {
 void writeSurvey(const Request& request, const core::SurveySimulation& survey, Progress& progress) {
   makeDirectory(request.output);
   removeEarlierSurvey(request.output);
-  std::vector<NamedPose> truth;
-  for (std::size_t i = 0; i < survey.size(); ++i) {
-    progress.begin("scan", "sub-map " + std::to_string(i + 1) + " of " + std::to_string(survey.size()));
+  std::vector<NamedPose> truth(survey.size());
+  std::mutex shown;
+  core::forEachPart(static_cast<Eigen::Index>(survey.size()), [&](Eigen::Index part) {
+    const auto i = static_cast<std::size_t>(part);
+    {
+      const std::lock_guard<std::mutex> lock(shown);
+      progress.begin("scan", "sub-map " + std::to_string(i + 1) + " of " + std::to_string(survey.size()));
+    }
     const core::SimulatedSubmap submap = survey.submap(i);
     writeSimulatedScan(request.output + "/" + fileName(i), submap.scan, submap.world_from_navigation);
-    truth.push_back({fileName(i), submap.scan.world_from_scan});
-  }
+    truth[i] = {fileName(i), submap.scan.world_from_scan};
+  });
   progress.end();
   writeText(request.output + "/truth.csv", asCsv(truth));
 }
@@ -172,6 +180,7 @@ void runSimulateSurvey(const std::vector<std::string>& arguments) {
     std::cout << HELP_BEFORE << options << HELP_AFTER;
     return;
   }
+  const core::Threads threads(threadsOf(values));
   checkComplete(values, request);
   Progress progress(request.quiet || request.json);
   progress.begin("site", "building the site");

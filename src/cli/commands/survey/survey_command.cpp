@@ -155,6 +155,7 @@ po::options_description surveyOptions() {
       "standard deviation of the places by navigation [m], 0.0001 to 10000");
   add("heading-sigma", po::value<double>()->default_value(sigmas.heading, "2")->value_name("DEG"),
       "standard deviation of the headings by navigation [degrees], 0.001 to 180");
+  addThreadsOption(options);
   addReportOption(options);
   add("json", po::bool_switch(), "print survey.json");
   add("quiet", po::bool_switch(), "print nothing but errors");
@@ -202,6 +203,7 @@ ordered_json reportTogether(const SurveyRequest& request, const SurveyOutcome& t
 
 void surveyFolders(const po::variables_map& values) {
   SurveyRequest request = parseSurveyRequest(values);
+  const core::Threads threads(threadsOf(values));
   const bool quiet = values["quiet"].as<bool>();
   const std::string page = reportPath(values, request.directory);
   makeDirectory(request.directory);
