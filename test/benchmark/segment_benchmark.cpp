@@ -1,6 +1,7 @@
-// Speed of the segmentation and of the clustering beside PCL's own filters on the same points: one core, a
-// simulated wreck of 600,000 points in random order. The last lines give the ratios; single times mean little
-// on a shared machine.
+// Speed of the segmentation and of the clustering beside PCL's own filters on the same points: a simulated
+// wreck of 600,000 points in random order, or with --points N copies of it side by side. --threads 1,2,4
+// segments with as many threads, too. The last lines give the ratios; single times mean little on a shared
+// machine. Google Benchmark's options go on, --benchmark_out=FILE (JSON) among them.
 
 #include <benchmark/benchmark.h>
 #include <pcl/filters/voxel_grid.h>
@@ -11,8 +12,10 @@
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
+#include <cmath>
 #include <cstdio>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -27,11 +30,33 @@ using Cloud = pcl::PointCloud<Point>;
 
 constexpr float CELL = 0.02F;
 
+std::size_t wanted_points = 600000;
+std::vector<unsigned> thread_numbers{1};
+
+/// Copies of the first points, side by side in a square.
+void growTo(std::size_t size, Cloud& cloud) {
+  constexpr float SIDE = 4;  // of a scan [m]
+  const std::size_t once = cloud.size();
+  const auto row =
+      static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(size) / static_cast<double>(once))));
+  for (std::size_t n = once; n < size; ++n) {
+    const std::size_t copy = n / once;
+    Point p = cloud[n % once];
+    p.x += SIDE * static_cast<float>(copy % row);
+    p.y += SIDE * static_cast<float>(copy / row);
+    cloud.push_back(p);
+  }
+}
+
 Cloud::Ptr simulatedWreck() {
-  const pcl_fft_ground::core::SimulatedScan scan = pcl_fft_ground::core::simulateScan({});
+  pcl_fft_ground::core::SimulationParameters parameters;
+  parameters.points = std::min(wanted_points, parameters.points);
+  const pcl_fft_ground::core::SimulatedScan scan = pcl_fft_ground::core::simulateScan(parameters);
   Cloud::Ptr cloud(new Cloud);
+  cloud->reserve(wanted_points);
   for (Eigen::Index i = 0; i < scan.points.cols(); ++i)
     cloud->push_back({scan.points(0, i), scan.points(1, i), scan.points(2, i)});
+  growTo(wanted_points, *cloud);
   boost::random::mt19937 random(1);
   for (std::size_t i = cloud->size(); i > 1; --i)
     std::swap((*cloud)[i - 1],
@@ -76,6 +101,7 @@ void segmentScan(benchmark::State& state, const SetUp& set_up) {
     pcl_fft_ground::FFTGroundSegmentation<Point> filter;
     filter.setInputCloud(scan());
     filter.setMaximumObjectSize(1.0);
+    filter.setNumberOfThreads(static_cast<unsigned>(state.range(0)));
     set_up(filter);
     pcl::PointIndices ground, objects;
     filter.segment(ground, objects);
@@ -122,19 +148,29 @@ void voxelClusters(benchmark::State& state) {
   }
 }
 
-BENCHMARK(voxelGrid)->Unit(benchmark::kMillisecond);
-BENCHMARK(segmentLowPass)->Unit(benchmark::kMillisecond);
-BENCHMARK(segmentRobust)->Unit(benchmark::kMillisecond);
-BENCHMARK(euclideanClusters)->Unit(benchmark::kMillisecond);
-BENCHMARK(voxelClusters)->Unit(benchmark::kMillisecond);
+void registerAll() {
+  using benchmark::RegisterBenchmark;
+  RegisterBenchmark("voxelGrid", voxelGrid)->Unit(benchmark::kMillisecond);
+  for (const unsigned threads : thread_numbers) {
+    RegisterBenchmark("segmentLowPass", segmentLowPass)->Arg(threads)->Unit(benchmark::kMillisecond);
+    RegisterBenchmark("segmentRobust", segmentRobust)->Arg(threads)->Unit(benchmark::kMillisecond);
+  }
+  RegisterBenchmark("euclideanClusters", euclideanClusters)->Unit(benchmark::kMillisecond);
+  RegisterBenchmark("voxelClusters", voxelClusters)->Unit(benchmark::kMillisecond);
+}
 
-/// Prints as usual and keeps the median CPU time of each benchmark.
+/// Prints as usual and keeps the times of each benchmark by its name: CPU time, as others use the machine,
+/// too; of several threads real time.
 class MedianReporter : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {
     ConsoleReporter::ReportRuns(runs);
     for (const Run& run : runs)
-      if (run.aggregate_name.empty()) times_[run.run_name.function_name].push_back(run.GetAdjustedCPUTime());
+      if (run.aggregate_name.empty()) {
+        const bool shared = !run.run_name.args.empty() && run.run_name.args != "1";
+        times_[shared ? run.run_name.function_name + "/" + run.run_name.args : run.run_name.function_name]
+            .push_back(shared ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime());
+      }
   }
 
   void printRatio(const char* text, const std::string& numerator, const std::string& denominator) {
@@ -152,11 +188,33 @@ class MedianReporter : public benchmark::ConsoleReporter {
   std::map<std::string, std::vector<double>> times_;
 };
 
+/// Takes --points and --threads out of the arguments.
+void takeOptions(std::vector<char*>& arguments) {
+  for (std::size_t n = 1; n + 1 < arguments.size();) {
+    const std::string name = arguments[n];
+    if (name != "--points" && name != "--threads") {
+      ++n;
+      continue;
+    }
+    std::istringstream value(arguments[n + 1]);
+    if (name == "--points") value >> wanted_points;
+    if (name == "--threads") {
+      thread_numbers.clear();
+      for (std::string number; std::getline(value, number, ',');)
+        thread_numbers.push_back(static_cast<unsigned>(std::stoul(number)));
+    }
+    arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(n),
+                    arguments.begin() + static_cast<std::ptrdiff_t>(n + 2));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   // Interleaved repetitions: a machine that slows down meanwhile slows both sides of a ratio.
   std::vector<char*> arguments(argv, argv + argc);
+  takeOptions(arguments);
+  registerAll();
   char repetitions[] = "--benchmark_repetitions=9",
        interleaving[] = "--benchmark_enable_random_interleaving=true",
        min_time[] = "--benchmark_min_time=0.05";
@@ -167,6 +225,12 @@ int main(int argc, char** argv) {
   benchmark::RunSpecifiedBenchmarks(&reporter);
   reporter.printRatio("segment (LOW_PASS) / pcl::VoxelGrid", "segmentLowPass", "voxelGrid");
   reporter.printRatio("segment (ROBUST) / pcl::VoxelGrid", "segmentRobust", "voxelGrid");
+  for (const unsigned threads : thread_numbers)
+    if (threads != 1)
+      for (const char* const name : {"segmentLowPass", "segmentRobust"})
+        reporter.printRatio(
+            (std::string(name) + ", 1 thread / " + std::to_string(threads) + " threads").c_str(), name,
+            std::string(name) + "/" + std::to_string(threads));
   reporter.printRatio("segment (ROBUST) / segment (LOW_PASS)", "segmentRobust", "segmentLowPass");
   reporter.printRatio("pcl::EuclideanClusterExtraction / VoxelClusterExtraction", "euclideanClusters",
                       "voxelClusters");

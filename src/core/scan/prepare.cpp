@@ -21,7 +21,7 @@ bool areMeasurable(const Points& points, float beyond) {
   const std::vector<char> parts =
       resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) -> char {
         const auto part = points.middleCols(begin, end - begin).array();
-        // Ten times faster than a look at each: nothing times a number that is not finite is NaN.
+        // Faster than a look at each: nothing times a number that is not finite is NaN.
         return (part * 0.0F).sum() == 0.0F && part.maxCoeff() <= beyond && part.minCoeff() >= -beyond;
       });
   return std::all_of(parts.begin(), parts.end(), [](char is) { return is != 0; });
