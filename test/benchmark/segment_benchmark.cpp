@@ -167,9 +167,9 @@ class MedianReporter : public benchmark::ConsoleReporter {
     ConsoleReporter::ReportRuns(runs);
     for (const Run& run : runs)
       if (run.aggregate_name.empty()) {
-        const bool shared = !run.run_name.args.empty() && run.run_name.args != "1";
-        times_[shared ? run.run_name.function_name + "/" + run.run_name.args : run.run_name.function_name]
-            .push_back(shared ? run.GetAdjustedRealTime() : run.GetAdjustedCPUTime());
+        const std::string &name = run.run_name.function_name, &threads = run.run_name.args;
+        if (threads.empty() || threads == "1") times_[name].push_back(run.GetAdjustedCPUTime());
+        if (!threads.empty()) times_[name + "/" + threads].push_back(run.GetAdjustedRealTime());
       }
   }
 
@@ -229,8 +229,8 @@ int main(int argc, char** argv) {
     if (threads != 1)
       for (const char* const name : {"segmentLowPass", "segmentRobust"})
         reporter.printRatio(
-            (std::string(name) + ", 1 thread / " + std::to_string(threads) + " threads").c_str(), name,
-            std::string(name) + "/" + std::to_string(threads));
+            (std::string(name) + ", 1 thread / " + std::to_string(threads) + " threads").c_str(),
+            std::string(name) + "/1", std::string(name) + "/" + std::to_string(threads));
   reporter.printRatio("segment (ROBUST) / segment (LOW_PASS)", "segmentRobust", "segmentLowPass");
   reporter.printRatio("pcl::EuclideanClusterExtraction / VoxelClusterExtraction", "euclideanClusters",
                       "voxelClusters");
