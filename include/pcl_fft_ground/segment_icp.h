@@ -76,17 +76,19 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   void setMinMatches(std::size_t matches);
   std::size_t getMinMatches() const { return parameters_.min_matches; }
 
-  /// Least share of the object points seen by both scans that must agree, 0 to 1; three quarters of it
-  /// do for the dense fallback. Default 0.8.
+  /// Least share of the object points seen by both scans that must agree, 0 to 1; for the dense fallback
+  /// three quarters of it, of what the surfaces tell that both could see. Default 0.8.
   void setMinScore(double score);
   double getMinScore() const { return parameters_.min_score; }
 
-  /// Precision asked for [m], above 0: what is predicted to be worse horizontally, or leaves more than this
-  /// between the surfaces, is refused. Default 0.05.
+  /// Precision asked for [m], above 0: what is predicted to be worse, or leaves more than this between the
+  /// surfaces of segments, is refused. If it is not set, 0.05, or 0.12 of the side of a voxel if that is
+  /// more.
   void setMaxSigma(double sigma);
-  double getMaxSigma() const { return parameters_.max_sigma; }
+  /// 0 if it was not set.
+  double getMaxSigma() const { return parameters_.max_sigma.value_or(0); }
 
-  /// What is done where the segments do not suffice. Default: dense ICP over the overlap.
+  /// What is done where the segments do not suffice. Default: ICP of all surfaces.
   void setFallback(core::Fallback fallback) { parameters_.fallback = fallback; }
   core::Fallback getFallback() const { return parameters_.fallback; }
 

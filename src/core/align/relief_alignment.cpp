@@ -207,23 +207,6 @@ std::optional<Matrix6d> covarianceOf(const ReliefFit& fit) {
   return Matrix6d(of_noise + fit.spread);
 }
 
-/// Largest predicted deviation at the edge of the overlap [m].
-double deviationAtEdge(const Matrix6d& covariance, double radius) {
-  constexpr int DIRECTIONS = 8;
-  double largest = 0;
-  for (int k = 0; k < DIRECTIONS; ++k) {
-    const double angle = 2 * PI * k / DIRECTIONS;
-    const Eigen::Vector3d arm(radius * std::cos(angle), radius * std::sin(angle), 0);
-    Eigen::Matrix<double, 3, 6> jacobian;
-    jacobian.leftCols<3>().setIdentity();
-    jacobian.rightCols<3>() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
-    const Eigen::Matrix3d at_edge = jacobian * covariance * jacobian.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(at_edge, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, solver.eigenvalues()[2]);
-  }
-  return std::sqrt(std::max(0.0, largest));
-}
-
 double largestTurn(const Matrix6d& covariance) {
   const Eigen::Matrix3d turns = covariance.bottomRightCorner<3, 3>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(turns, Eigen::EigenvaluesOnly);
@@ -307,7 +290,7 @@ ReliefResult alignRelief(const PointsView& moving, const PointsView& reference,
     return result;
   }
   result.covariance = covarianceAboutOrigin(*covariance, best.fit.centre);
-  result.deviation = deviationAtEdge(*covariance, best.fit.radius);
+  result.deviation = deviationAtDistance(*covariance, best.fit.radius);
   result.refusal = reasonAgainst(result, parameters.gates);
   if (!result.refusal.empty()) return result;
   result.accepted = true;

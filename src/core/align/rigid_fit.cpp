@@ -38,10 +38,16 @@ void MotionFit::addToPlane(const Eigen::Vector3d& from, const Eigen::Vector3d& t
 }
 
 void MotionFit::addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight) {
+  addToPoint(from, to, Eigen::Matrix3d(weight * Eigen::Matrix3d::Identity()));
+}
+
+void MotionFit::addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                           const Eigen::Matrix3d& weight) {
   Eigen::Matrix<double, 3, 6> jacobian;
   jacobian << Eigen::Matrix3d::Identity(), -crossMatrix(from - centre_);
-  information_.noalias() += weight * jacobian.transpose() * jacobian;
-  gradient_ += weight * jacobian.transpose() * (to - from);
+  const Eigen::Matrix<double, 6, 3> weighted = jacobian.transpose() * weight;
+  information_.noalias() += weighted * jacobian;
+  gradient_ += weighted * (to - from);
 }
 
 Vector6d MotionFit::motion() const {
@@ -61,6 +67,22 @@ Matrix6d covarianceAboutOrigin(const Matrix6d& about_centre, const Eigen::Vector
   Matrix6d origin_from_centre = Matrix6d::Identity();
   origin_from_centre.topRightCorner<3, 3>() = crossMatrix(centre);
   return origin_from_centre * about_centre * origin_from_centre.transpose();
+}
+
+double deviationAtDistance(const Matrix6d& covariance, double radius) {
+  constexpr int DIRECTIONS = 8;
+  double largest = 0;
+  for (int k = 0; k < DIRECTIONS; ++k) {
+    const double angle = 2 * 3.14159265358979323846 * k / DIRECTIONS;
+    const Eigen::Vector3d arm(radius * std::cos(angle), radius * std::sin(angle), 0);
+    Eigen::Matrix<double, 3, 6> jacobian;
+    jacobian.leftCols<3>().setIdentity();
+    jacobian.rightCols<3>() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+    const Eigen::Matrix3d at_edge = jacobian * covariance * jacobian.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(at_edge, Eigen::EigenvaluesOnly);
+    largest = std::max(largest, solver.eigenvalues()[2]);
+  }
+  return std::sqrt(std::max(0.0, largest));
 }
 
 double yawOf(const Eigen::Isometry3d& transform) {

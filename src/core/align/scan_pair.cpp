@@ -57,12 +57,18 @@ void validate(const AlignmentParameters& parameters) {
   positive("max_shift", gates.max_shift);
   positive("max_rise", gates.max_rise);
   positive("max_tilt", gates.max_tilt);
-  positive("max_sigma", parameters.max_sigma);
+  positive("max_sigma", parameters.max_sigma.value_or(1));
   require(gates.max_turn > 0 && gates.max_turn <= 180, "max_turn", gates.max_turn, "above 0 to 180 degrees");
   require(gates.hypotheses >= 1, "hypotheses", gates.hypotheses, "1 or more");
   require(parameters.min_matches >= 1, "min_matches", static_cast<double>(parameters.min_matches),
           "1 or more");
   requireWithin("min_score", parameters.min_score, 0, 1, "0 to 1");
+}
+
+double largestSigma(const AlignmentParameters& parameters, double voxel_size) {
+  constexpr double CLOSE_RANGE = 0.05;  // [m]
+  constexpr double IN_VOXELS = 0.12;  // a third of the spacing; right poses were predicted to 0.03-0.1 voxels
+  return parameters.max_sigma.value_or(std::max(CLOSE_RANGE, IN_VOXELS * voxel_size));
 }
 
 ScanPair::ScanPair(const ScanSegments& moving, const ScanSegments& reference,

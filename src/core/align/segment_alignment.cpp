@@ -114,10 +114,11 @@ Alignment alignPlainly(const ScanPair& pair, const std::vector<CandidateMatch>& 
   return alignmentOf(pair, solution);
 }
 
-/// What the segments say, and whether they say two things.
+/// What the segments say, whether they say two things, and the corrections that they hint at.
 struct Attempt {
   Alignment alignment;
   bool ambiguous = false;
+  std::vector<Eigen::Isometry3d> starts = {};
 };
 
 Attempt alignBySegments(const ScanPair& pair) {
@@ -136,7 +137,9 @@ Attempt alignBySegments(const ScanPair& pair) {
     return contradicts(other, best, pair.voxelSize());
   });
   if (ambiguous) return {refused(pair, "the segments fit nearly as well elsewhere"), true};
-  return {alignmentOf(pair, best)};
+  std::vector<Eigen::Isometry3d> starts;
+  for (const Solution& solution : solutions) starts.push_back(solution.icp.correction);
+  return {alignmentOf(pair, best), false, starts};
 }
 
 /// Share of the occupied voxels that objects have.
@@ -190,7 +193,7 @@ Alignment alignScans(const ScanSegments& moving, const ScanSegments& reference,
   Alignment result = attempt.alignment;
   if (result.accepted || attempt.ambiguous) return result;
   if (parameters.fallback == Fallback::DENSE) {
-    const Alignment dense = alignDensely(pair, DensePoints::OVERLAP);
+    const Alignment dense = alignSurfaces(pair, attempt.starts);
     if (dense.accepted) return dense;
     result.refusal += "; without segments: " + dense.refusal;
   }

@@ -13,12 +13,6 @@ constexpr double DEGREE = 3.14159265358979323846 / 180;
 constexpr double SLACK = 1.15;            // the last refinement may leave the gates by so much
 constexpr double CORRELATED_POINTS = 10;  // errors of so many neighbouring points are the same
 
-std::string sentence(const std::string& what, double value, double allowed, const std::string& unit) {
-  std::ostringstream text;
-  text << std::setprecision(3) << what << " is " << value << unit << ", allowed are " << allowed << unit;
-  return text.str();
-}
-
 double largestDeviation(const Eigen::Matrix2d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
@@ -40,6 +34,12 @@ void count(const Points& sample, const Eigen::Isometry3d& transform, const Neare
 }
 
 }  // namespace
+
+std::string exceeding(const std::string& what, double value, double allowed, const std::string& unit) {
+  std::ostringstream text;
+  text << std::setprecision(3) << what << " is " << value << unit << ", allowed are " << allowed << unit;
+  return text.str();
+}
 
 AlignmentScore::AlignmentScore(const ScanPair& pair)
     : pair_(pair),
@@ -86,11 +86,11 @@ std::string reasonAgainstMotion(const ScanPair& pair, const IcpResult& icp) {
   const double turn = std::abs(yawOf(icp.correction)) / DEGREE;
   const double tilt = tiltOf(icp.correction) / DEGREE;
   if (moved.head<2>().norm() > SLACK * gates.max_shift)
-    return sentence("the shift", moved.head<2>().norm(), SLACK * gates.max_shift, " m");
+    return exceeding("the shift", moved.head<2>().norm(), SLACK * gates.max_shift, " m");
   if (std::abs(moved.z()) > SLACK * gates.max_rise)
-    return sentence("the rise", std::abs(moved.z()), SLACK * gates.max_rise, " m");
-  if (turn > SLACK * gates.max_turn) return sentence("the turn", turn, SLACK * gates.max_turn, " degrees");
-  if (tilt > gates.max_tilt) return sentence("the tilt", tilt, gates.max_tilt, " degrees");
+    return exceeding("the rise", std::abs(moved.z()), SLACK * gates.max_rise, " m");
+  if (turn > SLACK * gates.max_turn) return exceeding("the turn", turn, SLACK * gates.max_turn, " degrees");
+  if (tilt > gates.max_tilt) return exceeding("the tilt", tilt, gates.max_tilt, " degrees");
   return {};
 }
 
@@ -99,14 +99,14 @@ std::string reasonAgainst(const ScanPair& pair, const IcpResult& icp) {
   if (!reason.empty()) return reason;
   const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp);
   if (!covariance) return "the matched points leave a direction free";
-  const double max_sigma = pair.parameters().max_sigma;
+  const double max_sigma = largestSigma(pair.parameters(), pair.voxelSize());
   const double sigma = largestDeviation(covariance->topLeftCorner<2, 2>());
-  if (sigma > max_sigma) return sentence("the predicted horizontal deviation", sigma, max_sigma, " m");
+  if (sigma > max_sigma) return exceeding("the predicted horizontal deviation", sigma, max_sigma, " m");
   // Each scan sees its own side of things; the error that all correspondences share may be as large as what
   // is left.
   const double residual = std::sqrt(icp.variance);
   if (residual > max_sigma)
-    return sentence("the distance left between the surfaces", residual, max_sigma, " m");
+    return exceeding("the distance left between the surfaces", residual, max_sigma, " m");
   return {};
 }
 

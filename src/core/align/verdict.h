@@ -4,16 +4,16 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "align/icp.h"
 #include "align/scan_pair.h"
-#include "pcl_fft_ground/core/align/dense_alignment.h"
 
 namespace pcl_fft_ground::core {
 
 /// Object points seen by both scans that have to agree where the ground was aligned, too...
 constexpr std::size_t TELLING_OBJECTS = 50;
-/// ...and the share of min_score that does there: the ground has to fit, and nowhere else.
+/// ...and the share of min_score that does where all surfaces are compared.
 constexpr double SHARE_OF_SCORE = 0.75;
 
 /// How well two scans agree on where objects are, in the places that both have seen.
@@ -45,6 +45,9 @@ double overlapOf(const ScanPair& pair, const Eigen::Isometry3d& correction);
 /// it.
 std::optional<Matrix6d> covarianceAboutCentre(const IcpResult& icp);
 
+/// "the shift is 3 m, allowed are 2 m"
+std::string exceeding(const std::string& what, double value, double allowed, const std::string& unit);
+
 /// Why a correction of the initial guess is larger than it may be; empty if it is not.
 std::string reasonAgainstMotion(const ScanPair& pair, const IcpResult& icp);
 
@@ -58,7 +61,13 @@ Alignment refused(const ScanPair& pair, const std::string& reason);
 /// The result with what every method reports: transform, covariance, overlap.
 Alignment alignmentOf(const ScanPair& pair, const IcpResult& icp, AlignmentMethod method);
 
-/// Dense ICP of a pair, gated, see alignDensely() of scans.
-Alignment alignDensely(const ScanPair& pair, DensePoints which);
+/** Alignment of all surfaces of a pair, ground and objects, judged by what both scans could see.
+ *
+ * ICP from the guess and from around it; of the poses that it comes to the likeliest is accepted if
+ * navigation allows it, the surfaces agree in every direction, hardly any stand where the other scan has
+ * looked through, and no other pose comes near. \param more_starts corrections of the guess to start from,
+ * too
+ */
+Alignment alignSurfaces(const ScanPair& pair, const std::vector<Eigen::Isometry3d>& more_starts);
 
 }  // namespace pcl_fft_ground::core

@@ -203,6 +203,7 @@ ScanSegments coarsened(const ScanSegments& scan, double voxel_size) {
   parameters.voxel_size = voxel_size;
   ScanSegments coarse = describeSurface(scan.surface, parameters);
   coarse.relief = scan.relief;
+  coarse.sensor = scan.sensor;
   coarse.objects = ObjectMeans(coarse).of(scan.objects);
   clusterObjects(coarse);
   return coarse;

@@ -62,10 +62,30 @@ TEST_F(FlightLines, AreRefusedWhereMorePrecisionIsAskedForThanTheyHave) {
   EXPECT_NE(result.refusal.find("allowed are 0.0005 m"), std::string::npos) << result.refusal;
 }
 
-TEST(DenseAlignment, OfBareGroundIsRefused) {
+TEST(DenseAlignment, OfRollingGroundIsRightOrRefused) {
   const ScanSegments bare = describe(test::flyOver({}, WEST, 1));
   const ScanSegments again = describe(test::flyOver({}, WEST, 2));
-  EXPECT_FALSE(alignDensely(bare, again, guessOff(0.3, 0, 0), withinMetres()).accepted);
+  for (const double off : {0.1, 0.3, 1.0}) {
+    const Alignment result = alignDensely(bare, again, guessOff(off, 0, 0), withinMetres());
+    EXPECT_TRUE(!result.accepted || result.reference_from_moving.translation().norm() < 0.1) << off;
+  }
+}
+
+/// A level plain; the noise differs from scan to scan.
+ScanSegments plain(unsigned seed) {
+  test::FlightLine line = test::flyOver({}, WEST, seed);
+  for (Eigen::Index n = 0; n < line.points.cols(); ++n)
+    line.points(2, n) -=
+        0.3F * std::sin(0.1F * line.points(0, n)) + 0.2F * std::cos(0.13F * line.points(1, n));
+  return describe(line);
+}
+
+TEST(DenseAlignment, OfAPlainIsRefused) {
+  const ScanSegments moving = plain(1), reference = plain(2);
+  for (const double off : {0.0, 0.3, 1.0}) {
+    const Alignment result = alignDensely(moving, reference, guessOff(off, 0, 0), withinMetres());
+    EXPECT_FALSE(result.accepted) << off;
+  }
 }
 
 }  // namespace

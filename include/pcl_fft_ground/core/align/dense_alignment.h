@@ -8,16 +8,16 @@
 
 namespace pcl_fft_ground::core {
 
-/// Which points dense ICP takes.
+/// What dense ICP compares.
 enum class DensePoints {
-  OVERLAP,     ///< those where both scans have looked
-  EVERYWHERE,  ///< all: borders pull the scans on to each other
+  OVERLAP,     ///< surfaces that both scans could see; judged
+  EVERYWHERE,  ///< all points: borders pull the scans on to each other; accepted wherever it converges
 };
 
-/** Dense point-to-plane ICP of whole scans, ground included.
+/** Aligns whole scans, ground included.
  *
- * Over the overlap only it is the fallback of alignScans() and passes the same gates. Over all points it is
- * what the paper warns of at its Fig. 5, accepted wherever it converges.
+ * By the surfaces that both could see it is the fallback of alignScans(). By all points it is what the paper
+ * warns of at its Fig. 5.
  *
  * \param moving,reference,initial_guess,parameters as in alignScans(); `matches` stay empty
  */

@@ -51,6 +51,9 @@ class MotionFit {
   /// Distance of `from` to `to`. The weight is at least 0.
   PCL_FFT_GROUND_CORE_EXPORT void addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                                              double weight);
+  /// The same with a weight for each direction. It is symmetric and has no negative eigenvalue.
+  PCL_FFT_GROUND_CORE_EXPORT void addToPoint(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                             const Eigen::Matrix3d& weight);
 
   /// Adds or takes away the equations of another fit about the same centre.
   MotionFit& operator+=(const MotionFit& other) {
@@ -94,6 +97,10 @@ PCL_FFT_GROUND_CORE_EXPORT Matrix6d jackknifeCovariance(const std::vector<Motion
 /** Covariance for motions about the origin of what was found for motions about `centre`. */
 PCL_FFT_GROUND_CORE_EXPORT Matrix6d covarianceAboutOrigin(const Matrix6d& about_centre,
                                                           const Eigen::Vector3d& centre);
+
+/// Largest standard deviation of a motion, in any direction, at places so far from its centre, level with it
+/// [m]. \param about_centre covariance for motions about the centre
+PCL_FFT_GROUND_CORE_EXPORT double deviationAtDistance(const Matrix6d& about_centre, double distance);
 
 /// Turn about the vertical [rad], in (-pi, pi], of a rotation that is nearly one.
 PCL_FFT_GROUND_CORE_EXPORT double yawOf(const Eigen::Isometry3d& transform);

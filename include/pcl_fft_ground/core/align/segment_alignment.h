@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ enum class Matching {
 /// What is done where the segments do not suffice.
 enum class Fallback {
   NONE,   ///< the pair is refused
-  DENSE,  ///< ICP of all points where both scans have looked, accepted by the same gates
+  DENSE,  ///< ICP of all surfaces, from the guess and from around it, judged by what both scans could see
 };
 
 /// Whether the relief of the ground is asked where segments, and their fallback, do not decide.
@@ -60,13 +61,19 @@ struct AlignmentParameters {
   Fallback fallback = Fallback::DENSE;  ///< what follows where segments do not suffice
   ReliefUse relief = ReliefUse::OFF;    ///< what follows where these do not suffice either
   std::size_t min_matches = 3;          ///< N_seg: fewer matched segments give no alignment, >= 1
-  /// Least share of object points that must agree, [0, 1]; three quarters of it for the dense fallback.
+  /// Least share of object points that must agree, [0, 1]; three quarters of it of what the surfaces tell,
+  /// for the dense fallback.
   double min_score = 0.80;
-  /// Largest standard deviation, predicted horizontally, and largest root mean square of the distances that
-  /// are left between the surfaces [m], > 0: the precision that is asked for, whatever the resolution.
-  double max_sigma = 0.05;
+  /// The precision that is asked for, whatever the resolution [m], > 0: the largest standard deviation
+  /// predicted and, by segments, the largest root mean square of the distances left between the surfaces. If
+  /// not set, largestSigma() of the scans' voxels.
+  std::optional<double> max_sigma;
   NearestNeighboursFactory neighbours = columnNeighbours;  ///< how neighbours are searched
 };
+
+/// The precision asked for of scans with voxels of such a size [m]: 5 cm, but no less than thin scans can
+/// give.
+PCL_FFT_GROUND_CORE_EXPORT double largestSigma(const AlignmentParameters& parameters, double voxel_size);
 
 /// \throws std::invalid_argument naming the parameter, its value and what is allowed, if one is out of range
 PCL_FFT_GROUND_CORE_EXPORT void validate(const AlignmentParameters& parameters);

@@ -42,9 +42,11 @@ struct ScanSegments {
   std::vector<Segment> segments;        ///< larger ones first
   std::vector<std::ptrdiff_t> sources;  ///< per segment, which of the clusters it was made of
   Points objects;                       ///< mean point of each voxel that object points occupy
-  Points surface;                ///< mean point of each voxel that any points occupy: support of normals
-  Points relief;                 ///< the points, or a sample of them: support of alignRelief()
-  ScanCoverage coverage;         ///< where the scan has looked
+  Points surface;         ///< mean point of each voxel that any points occupy: support of normals
+  Points relief;          ///< the points, or a sample of them: support of alignRelief()
+  ScanCoverage coverage;  ///< where the scan has looked
+  /// Where the scan was taken from, if it was told; otherwise its points may show a sensor at the origin.
+  std::optional<Eigen::Vector3d> sensor;
   SegmentParameters parameters;  ///< what led here
 };
 

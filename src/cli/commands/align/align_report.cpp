@@ -116,6 +116,8 @@ ordered_json makeAlignmentReport(const AlignedPair& pair, const AlignmentSetting
       {"matches", matchesOf(pair)},
       {"crispness", crispnessOf(pair)}};
   report["parameters"] = settings.described;
+  report["parameters"]["max-sigma"] =
+      core::largestSigma(settings.alignment, std::max(reference.voxel_size, moving.voxel_size));
   report["segmentation"] = {{"method", segmenter.method}, {"parameters", segmenter.parameters}};
   return report;
 }

@@ -65,7 +65,7 @@ void describe(AlignmentSettings& settings) {
                         {"hypotheses", a.gates.hypotheses},
                         {"min-matches", a.min_matches},
                         {"min-score", a.min_score},
-                        {"max-sigma", a.max_sigma},
+                        {"max-sigma", core::largestSigma(a, s.voxel_size.value_or(0))},
                         {"min-extent", s.min_extent},
                         {"min-voxels", s.min_voxels},
                         {"max-segments", s.max_segments}};
@@ -91,15 +91,19 @@ po::options_description alignmentOptions(const char* fallback) {
       "local: segments are aligned one by one, matched, fitted by point-to-plane ICP and gated; plain: "
       "matched by "
       "their centroids and sizes only");
-  add("fallback", word(fallback), "where segments do not suffice: dense (ICP of the overlap, gated) or none");
+  add("fallback", word(fallback),
+      "where segments do not suffice: dense (ICP of all surfaces, gated) or none");
   add("relief", word("auto"),
       "where these do not suffice either: auto (the relief of bare ground is searched for all that "
       "navigation "
       "allows) or off");
   add("min-matches", count(), "N_seg: fewer matched segments give no alignment (3)");
-  add("min-score", number("SHARE"), "least share of object points that agree, up to 1 (0.8)");
+  add("min-score", number("SHARE"),
+      "least share of object points that agree, up to 1 (0.8); three quarters of it for dense");
   add("max-sigma", number("M"),
-      "largest predicted horizontal deviation, and largest distance left between the surfaces [m] (0.05)");
+      "largest predicted deviation, and largest distance left between the surfaces of segments [m] (0.05, or "
+      "0.12 "
+      "voxels if that is more)");
   add("min-extent", number("M"), "size of the smallest segment [m] (0.1)");
   add("min-voxels", count(), "voxels of the smallest segment (12)");
   add("max-segments", count(), "of more segments the largest are taken (60)");
@@ -132,7 +136,9 @@ AlignmentSettings alignmentSettings(const po::variables_map& values) {
   setNumber(values, "max-shift", 0, INFINITE, alignment.gates.max_shift);
   setNumber(values, "max-turn", 0, 180, alignment.gates.max_turn);
   setNumber(values, "min-score", 0, 1, alignment.min_score);
-  setNumber(values, "max-sigma", 0, INFINITE, alignment.max_sigma);
+  double max_sigma = 0;
+  setNumber(values, "max-sigma", 0, INFINITE, max_sigma);
+  if (max_sigma > 0) alignment.max_sigma = max_sigma;
   setNumber(values, "min-extent", 0, INFINITE, settings.segments.min_extent);
   setCount(values, "min-matches", alignment.min_matches);
   setCount(values, "min-voxels", settings.segments.min_voxels);
