@@ -21,6 +21,9 @@ class Progress {
   /// \param text what is being done, for the terminal
   void begin(const std::string& name, const std::string& text);
 
+  /// Tells how far the stage is, and about how long it will take. \param share that is done, 0 to 1
+  void advance(double share);
+
   /// Ends the last stage and wipes the line.
   void end();
 
@@ -30,8 +33,8 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   bool visible_;
-  std::string stage_;
-  Clock::time_point begun_;
+  std::string stage_, text_;
+  Clock::time_point begun_, shown_;
   std::vector<std::pair<std::string, double>> seconds_;
 };
 

@@ -83,6 +83,8 @@ struct RecordFile {
   std::size_t width = 0;  ///< width times height is the number of points
   std::size_t height = 1;
   std::function<RawCloud(std::string_view records)> decode;  ///< of some records, one behind the other
+  /// Gives a record another class, one that it has room for; LAS only.
+  std::function<void(char* record, int number)> reclassify = nullptr;
 
   std::size_t points() const { return width * height; }
 };

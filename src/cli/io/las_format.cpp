@@ -253,6 +253,16 @@ RawCloud decodePoints(std::string_view body, const LasHeader& header, std::size_
   return cloud;
 }
 
+void reclassify(const LasHeader& header, char* record, int number) {
+  const int most = header.isNewFormat() ? 255 : 31;
+  if (number > most)
+    throw WorkError("class " + std::to_string(number) + " is above " + std::to_string(most) +
+                    ", the highest of point format " + std::to_string(header.format));
+  char& stored = record[header.classPlace()];
+  const unsigned flags = header.isNewFormat() ? 0U : static_cast<std::uint8_t>(stored) & 0xE0U;
+  stored = static_cast<char>(flags | static_cast<unsigned>(number));
+}
+
 }  // namespace
 
 bool looksLikeLas(std::string_view content) {
@@ -268,10 +278,14 @@ RawCloud decodeLas(std::string_view content) {
 std::optional<RecordFile> lasRecords(std::string_view head, std::uint64_t file_size) {
   const LasHeader header = parseHeader(head, file_size);
   const std::string crs = crsOf(head, header.points_begin);
-  return RecordFile{header.points_begin, header.record_bytes, header.points, 1,
+  return RecordFile{header.points_begin,
+                    header.record_bytes,
+                    header.points,
+                    1,
                     [header, crs](std::string_view records) {
                       return decodePoints(records, header, records.size() / header.record_bytes, crs);
-                    }};
+                    },
+                    [header](char* record, int number) { reclassify(header, record, number); }};
 }
 
 std::string reclassifiedLas(std::string content, const std::vector<int>& classes) {
@@ -279,16 +293,9 @@ std::string reclassifiedLas(std::string content, const std::vector<int>& classes
   if (classes.size() != header.points)
     throw WorkError("it has changed: it had " + std::to_string(classes.size()) + " points and has " +
                     std::to_string(header.points));
-  const int most = header.isNewFormat() ? 255 : 31;
-  for (std::size_t n = 0; n < classes.size(); ++n) {
-    if (classes[n] < 0) continue;
-    if (classes[n] > most)
-      throw WorkError("class " + std::to_string(classes[n]) + " is above " + std::to_string(most) +
-                      ", the highest of point format " + std::to_string(header.format));
-    char& stored = content[header.points_begin + n * header.record_bytes + header.classPlace()];
-    const unsigned flags = header.isNewFormat() ? 0U : static_cast<std::uint8_t>(stored) & 0xE0U;
-    stored = static_cast<char>(flags | static_cast<unsigned>(classes[n]));
-  }
+  for (std::size_t n = 0; n < classes.size(); ++n)
+    if (classes[n] >= 0)
+      reclassify(header, content.data() + header.points_begin + n * header.record_bytes, classes[n]);
   return content;
 }
 

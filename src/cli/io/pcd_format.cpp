@@ -374,12 +374,16 @@ RawCloud decodePcd(std::string_view content) {
 std::optional<RecordFile> pcdRecords(std::string_view head) {
   const PcdHeader header = parsePcdHeader(head);
   if (header.storage != PcdStorage::BINARY || header.point_bytes == 0) return std::nullopt;
-  return RecordFile{header.body, header.point_bytes, header.width, header.height,
+  return RecordFile{header.body,
+                    header.point_bytes,
+                    header.width,
+                    header.height,
                     [header](std::string_view records) {
                       RawCloud cloud = emptyCloud(header);
                       cloud.table = decodeBinary(records, header, records.size() / header.point_bytes, 1);
                       return cloud;
-                    }};
+                    },
+                    nullptr};
 }
 
 void writePcd(const std::string& path, const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoint) {

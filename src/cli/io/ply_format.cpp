@@ -278,12 +278,16 @@ std::optional<RecordFile> plyRecords(std::string_view head) {
     return std::nullopt;
   const VertexRecords records(header.elements.front(), header.storage);
   if (records.bytes == 0) return std::nullopt;
-  return RecordFile{header.body, records.bytes, header.elements.front().count, 1,
+  return RecordFile{header.body,
+                    records.bytes,
+                    header.elements.front().count,
+                    1,
                     [records](std::string_view bytes) {
                       RawCloud cloud;
                       cloud.table = records.read(bytes, bytes.size() / records.bytes);
                       return cloud;
-                    }};
+                    },
+                    nullptr};
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -30,6 +30,10 @@ struct Method {
 /// What every method can be set to; notes the values.
 void setUpCommon(GroundSegmentation<Point>& filter, ParameterSetter& parameters);
 
+/// Parameters with those that were chosen from the data: {"value", "from": "data", "reason"}.
+nlohmann::ordered_json withChoices(nlohmann::ordered_json parameters,
+                                   const std::vector<core::RobustChoice>& choices);
+
 /// A segmenter whose filter is set up by the common options and those of its kind.
 /// \param set_up called with the filter and a ParameterSetter
 template <typename Filter, typename SetUp>

@@ -112,9 +112,11 @@ double Segmenter::cellSize() const {
 }
 
 ordered_json Segmenter::parametersInForce() const {
-  ordered_json result = parameters;
-  if (fft == nullptr) return result;
-  for (const core::RobustChoice& choice : fft->getChoices()) {
+  return fft == nullptr ? parameters : withChoices(parameters, fft->getChoices());
+}
+
+ordered_json withChoices(ordered_json result, const std::vector<core::RobustChoice>& choices) {
+  for (const core::RobustChoice& choice : choices) {
     if (choice.parameter == "statistic") continue;  // an option with a word for a value, noted as the default
     std::string option = choice.parameter;
     std::replace(option.begin(), option.end(), '_', '-');

@@ -13,14 +13,6 @@ using Cell = std::pair<Eigen::Index, Eigen::Index>;
 constexpr Eigen::Index MARGIN = 2;          // uncovered cells around the points
 constexpr std::size_t LARGEST_SHADOW = 30;  // a larger hole was not seen, for all we know [cells]
 
-GridGeometry gridWithMargin(const PointsView& points, double cell_size) {
-  GridGeometry geometry = gridAround(boundsOf(points), cell_size);
-  geometry.origin.array() -= MARGIN * cell_size;
-  geometry.rows += 2 * MARGIN;
-  geometry.cols += 2 * MARGIN;
-  return geometry;
-}
-
 Mask occupiedCells(const PointsView& points, const GridGeometry& geometry) {
   Mask occupied = Mask::Constant(geometry.rows, geometry.cols, false);
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
@@ -121,11 +113,23 @@ double ScanCoverage::area() const {
   return static_cast<double>((depth > 0).count()) * geometry.cell_size * geometry.cell_size;
 }
 
+GridGeometry coverageCells(const Bounds& bounds, double cell_size) {
+  GridGeometry geometry = gridAround(bounds, cell_size);
+  geometry.origin.array() -= MARGIN * cell_size;
+  geometry.rows += 2 * MARGIN;
+  geometry.cols += 2 * MARGIN;
+  return geometry;
+}
+
+ScanCoverage coverageOf(const GridGeometry& cells, const Mask& occupied) {
+  const Mask closed = !grown(!grown(occupied));
+  return {cells, depthOf(withoutShadows(closed), cells.cell_size)};
+}
+
 ScanCoverage coverageOf(const PointsView& points, double cell_size) {
   if (points.cols() == 0) return {};
-  const GridGeometry geometry = gridWithMargin(points, cell_size);
-  const Mask closed = !grown(!grown(occupiedCells(points, geometry)));
-  return {geometry, depthOf(withoutShadows(closed), cell_size)};
+  const GridGeometry geometry = coverageCells(boundsOf(points), cell_size);
+  return coverageOf(geometry, occupiedCells(points, geometry));
 }
 
 double overlapShare(const ScanCoverage& reference, const ScanCoverage& moving,

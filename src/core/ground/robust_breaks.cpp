@@ -27,11 +27,12 @@ struct Rim {
 
 class Rims {
  public:
-  Rims(const CellMap& land, const Mask& ground, double largest_object)
+  Rims(const CellMap& land, const Mask& ground, const RobustPlan& plan)
       : land_(land),
         ground_(ground),
-        cell_(land.cells().cell_size / largest_object),
-        least_height_(LEAST_HEIGHT * largest_object),
+        ends_(endsOf(land.cells(), plan.bounds)),
+        cell_(land.cells().cell_size / plan.max_object_size),
+        least_height_(LEAST_HEIGHT * plan.max_object_size),
         member_(Eigen::ArrayXXi::Zero(ground.rows(), ground.cols())) {}
 
   /// Half the side of the square that a broad region holds [cells].
@@ -67,10 +68,26 @@ class Rims {
     double all = 0, ground = 0, gentle = 0, higher = 0;
   };
 
+  /// On which sides the scan ends with the cells; on others it goes on, in another tile.
+  struct Ends {
+    bool low_row, high_row, low_col, high_col;
+  };
+
+  static Ends endsOf(const GridGeometry& cells, const Bounds& bounds) {
+    const Eigen::Array2d first = bounds.low.head<2>() + 0.5 * cells.cell_size, last = bounds.high.head<2>();
+    const Eigen::Array2d low = cells.origin;
+    const Eigen::Array2d high =
+        low +
+        cells.cell_size * Eigen::Array2d(static_cast<double>(cells.rows), static_cast<double>(cells.cols)) +
+        1e-6 * cells.cell_size;
+    return {low.x() < first.x(), high.x() >= last.x(), low.y() < first.y(), high.y() >= last.y()};
+  }
+
   bool isAtBorder(Eigen::Index cell) const {
     constexpr Eigen::Index OUTER = 2;
     const Eigen::Index rows = ground_.rows(), cols = ground_.cols(), i = cell % rows, j = cell / rows;
-    return i < OUTER || j < OUTER || i >= rows - OUTER || j >= cols - OUTER;
+    return (ends_.low_row && i < OUTER) || (ends_.low_col && j < OUTER) ||
+           (ends_.high_row && i >= rows - OUTER) || (ends_.high_col && j >= cols - OUTER);
   }
 
   void lookAround(Eigen::Index cell, Pairs& pairs) const {
@@ -95,6 +112,7 @@ class Rims {
 
   const CellMap& land_;
   const Mask& ground_;
+  Ends ends_;
   double cell_, least_height_;
   Eigen::ArrayXXi member_;  // number of the region that was looked at last
   int number_ = 0;
@@ -131,17 +149,19 @@ bool anyLargeRegion(const Mask& cells, double cell) {
 
 }  // namespace
 
-Mask groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, const Mask& ground,
-                       double largest_object, const std::optional<double>& max_slope) {
+AboveBreaks groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, const Mask& ground,
+                              const RobustPlan& plan, const std::optional<double>& max_slope) {
   constexpr float GENTLE = 0.15F, PROOF = 0.3F, BROKEN = 0.4F;  // slopes
+  const double largest_object = plan.max_object_size;
   const Mask& observed = elevation.observed;
   const Mask above = observed && !ground, none = Mask::Constant(above.rows(), above.cols(), false);
-  if (!max_slope && !anyLargeRegion(joined(above, observed), land.cells().cell_size / largest_object))
-    return none;
+  const bool is_known = max_slope || plan.land_breaks;
+  if (!is_known && !anyLargeRegion(joined(above, observed), land.cells().cell_size / largest_object))
+    return {none, false};
 
   const Eigen::ArrayXXf steepness =
       steepnessByOpenings(elevation, {largest_object, LEAST_HEIGHT * largest_object});
-  Rims rims(land, ground, largest_object);
+  Rims rims(land, ground, plan);
   const auto landUpTo = [&](float slope, bool (*judge)(const Rim&)) {
     const Mask chosen = above && steepness <= slope;
     const Mask filled = joined(chosen, observed);
@@ -152,9 +172,10 @@ Mask groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, cons
         for (const Eigen::Index cell : region.cells) result.data()[cell] = chosen.data()[cell];
     return result;
   };
-  if (max_slope) return landUpTo(static_cast<float>(*max_slope), isLand);
+  if (max_slope) return {landUpTo(static_cast<float>(*max_slope), isLand), true};
   const Mask proof = landUpTo(PROOF, provesABreak) || landUpTo(GENTLE, isNoObject);
-  return proof.any() ? proof || landUpTo(BROKEN, isLand) : none;
+  if (!plan.land_breaks && !proof.any()) return {none, false};
+  return {proof || landUpTo(BROKEN, isLand), true};
 }
 
 void followGround(const CellMap& land, const Mask& ground, double spread, Eigen::ArrayXXd& surface) {

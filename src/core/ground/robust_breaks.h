@@ -6,6 +6,12 @@
 
 namespace pcl_fft_ground::core {
 
+/// Cells above breaks of the land.
+struct AboveBreaks {
+  Mask cells;             ///< of the observed ones; none where the land does not break
+  bool is_known = false;  ///< whether it is known that the land breaks
+};
+
 /** Ground above breaks of the land, which a band-limited surface has lost.
  *
  * Of the cells that stand out of the ground, those that progressive openings leave (openedGround()) are
@@ -14,12 +20,11 @@ namespace pcl_fft_ground::core {
  *
  * \param elevation heights of the cells, the empty ones filled
  * \param ground observed cells
- * \param largest_object [m]
+ * \param plan tells the largest object, where the scan ends, and whether the land is known to break
  * \param max_slope steepest land, if it is known: then land is taken to break, and no proof asked for
- * \return observed cells; none where the land does not break
  */
-Mask groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, const Mask& ground,
-                       double largest_object, const std::optional<double>& max_slope);
+AboveBreaks groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, const Mask& ground,
+                              const RobustPlan& plan, const std::optional<double>& max_slope);
 
 /** Lets a surface follow the ground where that bends more sharply than its wavelengths can: at a ground cell
  * farther than three spreads from the surface the cell's own height takes its place.

@@ -51,7 +51,7 @@ Mask cellsAtSurface(const RobustSurface& surface, const GridGeometry& cells, dou
 /// The ground that the surface has not reached, and the surface through it.
 /// \return all ground cells; none if the surface has reached them all
 Mask completeGround(RobustSurface& surface, const RobustPlan& plan, const ElevationGrid& elevation,
-                    const std::optional<double>& max_slope) {
+                    const std::optional<double>& max_slope, bool& land_breaks) {
   constexpr int ROUNDS = 2;
   constexpr double ABOVE = 3, BELOW = 8;  // scales: outliers below would wreck the fit
   constexpr double LEAST_HEIGHT = 0.01;
@@ -74,7 +74,9 @@ Mask completeGround(RobustSurface& surface, const RobustPlan& plan, const Elevat
                                      std::max(surface.spread().centre + ABOVE * surface.spread().scale,
                                               LEAST_HEIGHT * size)) ||
                       gained;
-  const Mask above = groundAboveBreaks(land, elevation, ground, size, max_slope);
+  const AboveBreaks breaks = groundAboveBreaks(land, elevation, ground, plan, max_slope);
+  land_breaks = breaks.is_known;
+  const Mask& above = breaks.cells;
   if (!above.any()) return gained.any() ? band(BELOW, 0) || gained : gained;
   surface.refit(pointsIn(ground || above, surface.points()));
   return ground || above;
@@ -145,7 +147,8 @@ RobustGround fitRobustGround(const PointsView& points, const Eigen::Isometry3d& 
   ground.wavelengths =
       growFromBelow(surface, std::max(plan.max_object_size, plan.finest_wavelength), plan.finest_wavelength);
   const CellPoints lowest = surface.points();
-  const Mask completed = completeGround(surface, plan, ground.elevation, parameters.max_slope);
+  const Mask completed =
+      completeGround(surface, plan, ground.elevation, parameters.max_slope, ground.land_breaks);
   const GroundPoints found = fitGroundPoints(surface, sorted, USUAL_TOLERANCE * plan.max_object_size);
   ground.scale = found.spread;
   describeSurface(surface, plan, ground);

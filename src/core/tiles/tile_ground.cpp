@@ -143,6 +143,7 @@ TileGround fitTile(const PointsView& points, const Eigen::Isometry3d& frame_from
   result.ground = points.cols() > 0 ? fitRobustGround(points, frame_from_input, of_tile, parameters)
                                     : emptyGround(of_tile.cells);
   result.ground.surface.frame_from_input = frame_from_input;
+  result.ground.land_breaks = result.ground.land_breaks || plan.land_breaks;
   crop(result.ground, seen, result.window, tiling.geometryOf(result.window));
   return result;
 }

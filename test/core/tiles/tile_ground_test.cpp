@@ -44,15 +44,20 @@ Points pointsIn(const Points& points, const Tiling& tiling, const CellWindow& wi
 
 Labels labelsByTiles(const Site& site, double tile_size) {
   const Points& points = site.points();
-  const RobustPlan plan = planRobustGround(site.parameters, boundsOf(points), points.cols());
+  RobustPlan plan = planRobustGround(site.parameters, boundsOf(points), points.cols());
   const Tiling tiling = tilingOf(plan, tile_size);
   std::vector<TileGround> tiles;
   std::vector<TileSpread> spreads;
   Eigen::Index observed = 0;
+  const auto fit = [&](std::size_t t) {
+    return fitTile(pointsIn(points, tiling, tiling.seen(t)), site.scan.frame_from_input, plan,
+                   site.parameters, tiling, t);
+  };
+  for (std::size_t t = 0; t < tiling.size(); ++t) tiles.push_back(fit(t));
+  for (const TileGround& tile : tiles) plan.land_breaks = plan.land_breaks || tile.ground.land_breaks;
   for (std::size_t t = 0; t < tiling.size(); ++t) {
-    const Points seen = pointsIn(points, tiling, tiling.seen(t));
-    tiles.push_back(fitTile(seen, site.scan.frame_from_input, plan, site.parameters, tiling, t));
-    spreads.push_back(spreadOf(tiles.back(), tiling.core(t)));
+    if (plan.land_breaks && !tiles[t].ground.land_breaks) tiles[t] = fit(t);
+    spreads.push_back(spreadOf(tiles[t], tiling.core(t)));
     observed += spreads.back().observed;
   }
   Labels labels(static_cast<std::size_t>(points.cols()), Label::NEITHER);

@@ -36,6 +36,12 @@ struct ScanCoverage {
  */
 PCL_FFT_GROUND_CORE_EXPORT ScanCoverage coverageOf(const PointsView& points, double cell_size);
 
+/// The cells of coverageOf() for points within bounds.
+PCL_FFT_GROUND_CORE_EXPORT GridGeometry coverageCells(const Bounds& bounds, double cell_size);
+
+/// The same from the cells that hold a point. \param cells coverageCells() of all points
+PCL_FFT_GROUND_CORE_EXPORT ScanCoverage coverageOf(const GridGeometry& cells, const Mask& occupied);
+
 /// Share of the smaller of two scans' covered areas that the other covers, too, seen from above: 0 to 1; 0 if
 /// either covers nothing. \param reference_from_moving where the moving scan lies
 PCL_FFT_GROUND_CORE_EXPORT double overlapShare(const ScanCoverage& reference, const ScanCoverage& moving,

@@ -59,6 +59,7 @@ struct RobustGround {
   double finest_wavelength = 0;       ///< of the surface [m]
   std::vector<double> wavelengths;    ///< all scales, coarse to fine [m]
   std::vector<RobustChoice> choices;  ///< of the values that were not set
+  bool land_breaks = false;  ///< whether it is known that the land breaks: proven here or by the plan
 };
 
 /** The ground of a level scan as a band-limited surface fitted to the ground cells only, coarse to fine:
@@ -94,6 +95,7 @@ struct RobustPlan {
   double slope = 0;                   ///< of the scale's floor: threshold as a share of the wavelength [m/m]
   Eigen::Index sample = 0;            ///< about as many points of the whole scan are looked at
   std::vector<RobustChoice> choices;  ///< of the values that were not set
+  bool land_breaks = false;  ///< whether it is known, from another part of the scan, that the land breaks
 };
 
 /** Chooses what is not set from the bounds and the number of the points of a whole scan.

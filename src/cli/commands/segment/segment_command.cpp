@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <limits>
 #include <optional>
@@ -9,10 +11,14 @@
 #include "commands/commands.h"
 #include "commands/segment/segment_outputs.h"
 #include "commands/segment/segment_report.h"
+#include "commands/segment/tiled_segment.h"
 #include "errors.h"
+#include "io/cloud_stream.h"
 #include "io/output_file.h"
 #include "io/raster_files.h"
+#include "methods/method.h"
 #include "pcl_fft_ground/core/segments/object_clusters.h"
+#include "pcl_fft_ground/version.h"
 #include "progress.h"
 #include "reading_options.h"
 #include "report/report.h"
@@ -88,6 +94,12 @@ po::options_description commandOptions() {
   add("raster-resolution", po::value<double>()->value_name("M"),
       "side of a cell of ground_surface.tif [m], above 0 (the cell size)");
   addThreadsOption(options);
+  add("tile", po::value<double>()->value_name("M"),
+      "work tile by tile, tiles of this side [m], several times the largest object: memory follows the tile "
+      "and not CLOUD, which is binary PCD or PLY, or LAS; a run that is cut off goes on where it was when it "
+      "is started again (methods fft)");
+  add("memory", po::value<double>()->value_name("MIB"),
+      "memory that a run without --tile may take [MiB], above 0 (three quarters of what is free)");
   addReportOption(options);
   add("json", po::bool_switch(), "print the report as JSON");
   add("quiet", po::bool_switch(), "print nothing but errors");
@@ -139,8 +151,8 @@ ClusterParameters clusterParameters(const po::variables_map& values) {
 }
 
 /// Fills in the lengths that follow from what the segmenter found or was told.
-void chooseLengths(const po::variables_map& values, const Segmenter& segmenter, ClusterParameters& clusters) {
-  if (values.count("leaf-size") == 0) clusters.leaf_size = segmenter.cellSize();
+void chooseLengths(const po::variables_map& values, double cell_size, ClusterParameters& clusters) {
+  if (values.count("leaf-size") == 0) clusters.leaf_size = cell_size;
   const std::optional<double> largest = lengthOption(values, "max-object-size");
   const double smallest =
       largest ? core::MINIMUM_OBJECT_SHARE * *largest : core::MINIMUM_OBJECT_LEAVES * clusters.leaf_size;
@@ -219,6 +231,133 @@ std::vector<std::string> warningsOf(const Cloud& cloud, const Segmenter& segment
   return warnings;
 }
 
+/// The options as text, but for those that no result hangs on.
+std::string settingsOf(const po::variables_map& values) {
+  std::ostringstream text;
+  text << PCL_FFT_GROUND_VERSION << std::setprecision(17);
+  for (const auto& [name, value] : values) {
+    if (name == "output" || name == "memory" || name == "threads" || name == "json" || name == "quiet" ||
+        name == "cloud")
+      continue;
+    text << " --" << name << ' ';
+    if (const auto* word = boost::any_cast<std::string>(&value.value())) text << *word;
+    if (const auto* number = boost::any_cast<double>(&value.value())) text << *number;
+    if (const auto* count = boost::any_cast<long long>(&value.value())) text << *count;
+    if (const auto* is_on = boost::any_cast<bool>(&value.value())) text << *is_on;
+  }
+  return text.str();
+}
+
+/// The parameters of the robust estimator, for work that the filter does not do itself.
+core::RobustParameters robustParameters(const po::variables_map& values,
+                                        const FFTGroundSegmentation<Point>& fft) {
+  const auto given = [&](const char* option, double value) {
+    return values.count(option) != 0 ? std::optional<double>(value) : std::nullopt;
+  };
+  core::RobustParameters parameters;
+  if (values.count("relative-max-object-size") != 0)
+    parameters.relative_max_object_size = fft.getRelativeMaximumObjectSize();
+  parameters.max_object_size = given("max-object-size", fft.getMaximumObjectSize());
+  parameters.cell_size = given("cell-size", fft.getCellSize());
+  parameters.height_tolerance = given("height-tolerance", fft.getHeightTolerance());
+  parameters.finest_wavelength = given("finest-wavelength", fft.getFinestWavelength());
+  if (fft.getMaximumSlope() > 0) parameters.max_slope = fft.getMaximumSlope();
+  if (values.count("cell-statistic") != 0) parameters.statistic = fft.getCellStatistic();
+  parameters.filter_order = fft.getFilterOrder();
+  parameters.passband_ripple = fft.getPassbandRipple();
+  return parameters;
+}
+
+/// The memory that is free, as the system estimates it [MiB]; nothing where it does not tell.
+std::optional<double> freeMemory() {
+  std::ifstream stream("/proc/meminfo");
+  std::string name;
+  double kibibytes = 0;
+  while (stream >> name >> kibibytes) {
+    if (name == "MemAvailable:") return kibibytes / 1024;
+    stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return std::nullopt;
+}
+
+/// Refuses a cloud that would not fit into memory.
+void requireMemory(const po::variables_map& values, const std::string& input, const ReadOptions& reading) {
+  // Copies of each record and what else a point takes while it is read, segmented and written, at the most.
+  constexpr double COPIES = 4, BYTES = 120, MIB = 1 << 20, SHARE = 0.75;
+  std::optional<double> most = freeMemory();
+  if (most) *most *= SHARE;
+  if (values.count("memory") != 0) {
+    most = values["memory"].as<double>();
+    if (!(*most > 0)) {
+      std::ostringstream message;
+      message << "--memory " << *most << ": allowed is a number of MiB above 0";
+      throw UsageError(message.str());
+    }
+  }
+  const std::optional<CloudSize> size = sizeOfCloud(input, reading);
+  if (!most || !size) return;
+  const double needed =
+      static_cast<double>(size->points) * (COPIES * static_cast<double>(size->record_bytes) + BYTES) / MIB;
+  if (needed > *most)
+    throw WorkError(input + ": its " + std::to_string(size->points) + " points need about " +
+                    std::to_string(std::llround(needed)) + " MiB of memory, and " +
+                    std::to_string(std::llround(*most)) +
+                    " MiB may be taken: --tile METRES works piece by piece, --memory allows more");
+}
+
+void finish(const po::variables_map& values, const std::string& directory, const ordered_json& report) {
+  const bool quiet = values["quiet"].as<bool>();
+  const std::string text = asText(report);
+  writeText(directory + "/report.json", text);
+  for (const ordered_json& warning : report["warnings"])
+    if (!quiet)
+      std::cerr << "pcl_fft_ground: warning: " << report["input"].get<std::string>() << ": "
+                << warning.get<std::string>() << '\n';
+  if (values["json"].as<bool>())
+    std::cout << text;
+  else if (!quiet)
+    printSummary(std::cout, report);
+}
+
+void segmentTiled(const po::variables_map& values, const std::string& input, const std::string& directory,
+                  const Segmenter& segmenter, const ClusterParameters& clusters) {
+  if (segmenter.fft == nullptr || segmenter.fft->getEstimator() != Estimator::ROBUST)
+    throw UsageError("--tile: allowed with --method fft only, not with " + segmenter.method);
+  if (values.count("report") != 0) throw UsageError("--report: not allowed with --tile");
+  TiledRequest request;
+  request.site.frame.up_estimation = segmenter.filter->getUpEstimation();
+  request.site.frame.yaw = segmenter.filter->getYaw();
+  if (values.count("up-direction") != 0) request.site.frame.up_direction = segmenter.filter->getUpDirection();
+  request.site.robust = robustParameters(values, *segmenter.fft);
+  request.site.sensor = segmenter.sensor;
+  request.site.tile_size = *lengthOption(values, "tile");
+  request.site.settings = settingsOf(values);
+  request.reading = readOptions(values);
+  request.raster = rasterOptions(values);
+  request.classes = lasClasses(values);
+  request.heights = values["height"].as<bool>();
+  request.clusters = [&](double cell_size) {
+    ClusterParameters chosen = clusters;
+    chooseLengths(values, cell_size, chosen);
+    return chosen;
+  };
+  request.parameters = [&](const ClusterParameters& chosen, const std::vector<core::RobustChoice>& choices) {
+    ordered_json parameters =
+        describeClusterParameters(withChoices(segmenter.parameters, choices), chosen, values);
+    describeReading(request.reading, parameters);
+    parameters["tile"] = {{"value", request.site.tile_size}, {"from", "option"}};
+    return parameters;
+  };
+  CloudStream stream(input, request.reading);
+  if (values.count("classes") != 0 && stream.format() != CloudFormat::LAS)
+    throw UsageError("--classes: only a LAS file gets classes, and '" + input + "' is none");
+  makeDirectory(directory);
+  Progress progress(values["quiet"].as<bool>());
+  const ordered_json report = segmentByTiles(stream, directory, segmenter.method, request, progress);
+  finish(values, directory, report);
+  forgetTiles(directory);
+}
+
 void segment(const po::variables_map& values) {
   const std::string input = required(values, "cloud", std::string("cloud given: name a ") + CLOUD_FILES);
   const std::string directory = required(values, "output", "output given: name a directory by -o DIR");
@@ -229,9 +368,10 @@ void segment(const po::variables_map& values) {
   const LasClasses classes = lasClasses(values);
   const RasterOptions raster = rasterOptions(values);
   const std::string page = reportPath(values, directory);
-  const bool quiet = values["quiet"].as<bool>();
+  if (values.count("tile") != 0) return segmentTiled(values, input, directory, segmenter, clusters);
+  requireMemory(values, input, reading);
 
-  Progress progress(quiet);
+  Progress progress(values["quiet"].as<bool>());
   progress.begin("read", "Reading " + input);
   const Cloud cloud = readCloud(input, reading);
   if (values.count("classes") != 0 && cloud.format != CloudFormat::LAS)
@@ -240,7 +380,7 @@ void segment(const po::variables_map& values) {
   Segmentation segmentation = segmentCloud(input, cloud, segmenter);
   if (values["height"].as<bool>()) segmentation.heights = segmenter.filter->getHeightAboveGround();
   progress.begin("cluster", "Clustering the objects");
-  chooseLengths(values, segmenter, clusters);
+  chooseLengths(values, segmenter.cellSize(), clusters);
   clusterObjects(cloud, clusters, segmentation);
   progress.begin("write", "Writing to " + directory);
   makeDirectory(directory);
@@ -257,15 +397,8 @@ void segment(const po::variables_map& values) {
   const std::vector<std::string> warnings = warningsOf(cloud, segmenter, segmentation, clusters);
   const ordered_json report =
       makeReport(input, cloud, segmenter, segmentation, parameters, warnings, progress);
-  const std::string text = asText(report);
-  writeText(directory + "/report.json", text);
   if (!page.empty()) writeText(page, segmentPage(directory, cloud, segmentation, report));
-  for (const std::string& warning : warnings)
-    if (!quiet) std::cerr << "pcl_fft_ground: warning: " << input << ": " << warning << '\n';
-  if (values["json"].as<bool>())
-    std::cout << text;
-  else if (!quiet)
-    printSummary(std::cout, report);
+  finish(values, directory, report);
 }
 
 }  // namespace

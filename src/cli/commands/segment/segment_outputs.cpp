@@ -24,7 +24,7 @@ namespace {
 
 constexpr double NO_DATA = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<std::int32_t> labelNumbers(const core::Labels& labels) {
+std::vector<std::int32_t> numbersOf(const core::Labels& labels) {
   std::vector<std::int32_t> numbers;
   numbers.reserve(labels.size());
   for (const core::Label label : labels) numbers.push_back(static_cast<std::int32_t>(label));
@@ -115,16 +115,21 @@ GroundRaster placed(GroundRaster raster, const Eigen::Vector3d& origin) {
 
 }  // namespace
 
-void writeClouds(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+pcl::PCLPointCloud2 labelledFields(const Cloud& cloud, const Segmentation& segmentation) {
   pcl::PCLPointCloud2 labelled = cloud.fields;
   renameField(labelled, "label", "truth");
   renameField(labelled, "segment", "truth_segment");
-  setInt32Field(labelled, "label", labelNumbers(segmentation.labels));
+  setInt32Field(labelled, "label", numbersOf(segmentation.labels));
   setInt32Field(labelled, "segment", segmentation.segments);
   if (!segmentation.heights.empty()) {
     renameField(labelled, "height", "input_height");
     setFloatField(labelled, "height", {segmentation.heights.begin(), segmentation.heights.end()});
   }
+  return labelled;
+}
+
+void writeClouds(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+  const pcl::PCLPointCloud2 labelled = labelledFields(cloud, segmentation);
   const auto write = [&](const std::string& name, const pcl::PCLPointCloud2& points) {
     writePcd(directory + "/" + name, points, cloud.viewpoint);
   };
@@ -197,18 +202,6 @@ std::optional<core::ScanCoverage> coverageOf(const Cloud& cloud, double cell_siz
   }
 }
 
-core::ObjectProperties measureSegment(const Cloud& cloud, const Segmentation& segmentation,
-                                      const pcl::Indices& indices, const core::ObjectView& view) {
-  core::Points points(3, static_cast<Eigen::Index>(indices.size()));
-  std::vector<double> heights;
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    const Eigen::Vector3f point = (*cloud.points)[static_cast<std::size_t>(indices[k])].getVector3fMap();
-    points.col(static_cast<Eigen::Index>(k)) = point;
-    heights.push_back(segmentation.surface.heightAbove(point.cast<double>()));
-  }
-  return core::measureObject(points, heights, view);
-}
-
 /// The columns of segments.csv after the first nine.
 constexpr const char* PROPERTY_COLUMNS =
     ",length,width,thickness,axis_x,axis_y,axis_z,footing,volume,steepest,at_border,body,body_x,body_y,body_"
@@ -235,33 +228,49 @@ void writeProperties(std::ostream& csv, const core::ObjectProperties& object) {
 
 }  // namespace
 
-void writeSegments(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+std::string segmentHeader() {
+  return std::string("segment,points,cx,cy,cz,ex,ey,ez,height") + PROPERTY_COLUMNS + '\n';
+}
+
+std::string segmentRow(std::size_t number, std::size_t size, const core::Points& points,
+                       const std::vector<double>& heights, const core::ObjectView& view) {
   std::ostringstream csv;
-  csv << "segment,points,cx,cy,cz,ex,ey,ez,height" << PROPERTY_COLUMNS << '\n'
-      << std::fixed << std::setprecision(4);
+  csv << std::fixed << std::setprecision(4);
+  Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    const Eigen::Array3d p = points.col(n).array().cast<double>();
+    low = low.min(p);
+    high = high.max(p);
+    sum += p;
+  }
+  const double height = *std::max_element(heights.begin(), heights.end());
+  const Eigen::Array3d centroid = sum / static_cast<double>(points.cols()), extent = high - low;
+  csv << number << ',' << size << ',' << centroid.x() << ',' << centroid.y() << ',' << centroid.z() << ','
+      << extent.x() << ',' << extent.y() << ',' << extent.z() << ',' << height;
+  writeProperties(csv, core::measureObject(points, heights, view));
+  csv << '\n';
+  return csv.str();
+}
+
+void writeSegments(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation) {
+  std::string csv = segmentHeader();
   const double cell_size = segmentation.elevation.geometry.cell_size;
   const std::optional<core::ScanCoverage> coverage = coverageOf(cloud, cell_size);
   const core::ObjectView view{cell_size, segmentation.surface.frame_from_input.linear().row(2).transpose(),
                               coverage ? &*coverage : nullptr};
   for (std::size_t k = 0; k < segmentation.clusters.size(); ++k) {
-    Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
-    double height = -std::numeric_limits<double>::infinity();
     const pcl::Indices& indices = segmentation.clusters[k].indices;
-    for (const pcl::index_t n : indices) {
-      const Eigen::Array3d p = (*cloud.points)[static_cast<std::size_t>(n)].getArray3fMap().cast<double>();
-      low = low.min(p);
-      high = high.max(p);
-      sum += p;
-      height = std::max(height, segmentation.surface.heightAbove(p));
+    core::Points points(3, static_cast<Eigen::Index>(indices.size()));
+    std::vector<double> heights;
+    for (std::size_t n = 0; n < indices.size(); ++n) {
+      const Eigen::Vector3f point = (*cloud.points)[static_cast<std::size_t>(indices[n])].getVector3fMap();
+      points.col(static_cast<Eigen::Index>(n)) = point;
+      heights.push_back(segmentation.surface.heightAbove(point.cast<double>()));
     }
-    const Eigen::Array3d centroid = sum / static_cast<double>(indices.size()), extent = high - low;
-    csv << k + 1 << ',' << indices.size() << ',' << centroid.x() << ',' << centroid.y() << ',' << centroid.z()
-        << ',' << extent.x() << ',' << extent.y() << ',' << extent.z() << ',' << height;
-    writeProperties(csv, measureSegment(cloud, segmentation, indices, view));
-    csv << '\n';
+    csv += segmentRow(k + 1, indices.size(), points, heights, view);
   }
-  writeText(directory + "/segments.csv", csv.str());
+  writeText(directory + "/segments.csv", csv);
 }
 
 }  // namespace pcl_fft_ground::cli

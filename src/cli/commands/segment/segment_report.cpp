@@ -49,12 +49,10 @@ const char* nameOf(core::CutoffSource source) {
   return "option";
 }
 
-ordered_json describeSpectrum(const FFTGroundSegmentation<Point>* filter) {
-  if (filter == nullptr) return nullptr;
-  const FFTGroundSegmentation<Point>& fft = *filter;
-  const core::Cutoff cutoff = fft.getCutoff();
-  const std::vector<core::SpectrumPeak> peaks = fft.getSpectrumPeaks();
-  const core::Spectrum spectrum = fft.getSpectrum();
+}  // namespace
+
+ordered_json describeSpectrum(const core::Spectrum& spectrum, const core::Cutoff& cutoff,
+                              const std::vector<core::SpectrumPeak>& peaks) {
   ordered_json nearest = ordered_json::array();
   for (std::size_t n = 0; n < std::min(peaks.size(), PEAKS_IN_REPORT); ++n)
     nearest.push_back(describePeak(peaks[n]));
@@ -67,6 +65,8 @@ ordered_json describeSpectrum(const FFTGroundSegmentation<Point>* filter) {
           {"peak_count", peaks.size()},
           {"peaks", nearest}};
 }
+
+namespace {
 
 /// What the robust estimator found out about the ground.
 ordered_json describeGround(const FFTGroundSegmentation<Point>* fft) {
@@ -93,6 +93,8 @@ const char* nameOf(SideSource source) {
   return "prior";
 }
 
+}  // namespace
+
 ordered_json describeUp(const UpDirection& up) {
   return {{"axis", {up.axis.x(), up.axis.y(), up.axis.z()}},
           {"side_from", nameOf(up.side_from)},
@@ -101,12 +103,18 @@ ordered_json describeUp(const UpDirection& up) {
           {"reasons", up.reasons}};
 }
 
-ordered_json describeElevation(const core::ElevationGrid& elevation) {
-  return {{"rows", elevation.geometry.rows},
-          {"cols", elevation.geometry.cols},
-          {"cell_size", elevation.geometry.cell_size},
-          {"lower_corner", {elevation.geometry.origin.x(), elevation.geometry.origin.y()}},
-          {"empty_cell_share", elevation.emptyCellShare()}};
+ordered_json describeElevation(const core::GridGeometry& cells, double empty_share) {
+  return {{"rows", cells.rows},
+          {"cols", cells.cols},
+          {"cell_size", cells.cell_size},
+          {"lower_corner", {cells.origin.x(), cells.origin.y()}},
+          {"empty_cell_share", empty_share}};
+}
+
+ordered_json describeSeconds(const Progress& progress) {
+  ordered_json seconds;
+  for (const auto& [stage, time] : progress.seconds()) seconds[stage] = time;
+  return seconds;
 }
 
 ordered_json describeScores(const std::optional<core::Confusion>& confusion) {
@@ -120,6 +128,8 @@ ordered_json describeScores(const std::optional<core::Confusion>& confusion) {
           {"f1", confusion->f1()}};
 }
 
+namespace {
+
 void printShare(std::ostream& out, const ordered_json& counts, const char* name) {
   const auto points = counts["points"].get<double>(), part = counts[name].get<double>();
   out << std::left << std::setw(11) << name << std::right << std::setw(10) << counts[name].get<std::size_t>()
@@ -131,8 +141,7 @@ void printShare(std::ostream& out, const ordered_json& counts, const char* name)
 ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segmenter& segmenter,
                         const Segmentation& segmentation, ordered_json parameters,
                         const std::vector<std::string>& warnings, const Progress& progress) {
-  ordered_json seconds;
-  for (const auto& [stage, time] : progress.seconds()) seconds[stage] = time;
+  const FFTGroundSegmentation<Point>* const fft = segmenter.fft;
   return {{"version", PCL_FFT_GROUND_VERSION},
           {"input", input},
           {"method", segmenter.method},
@@ -141,12 +150,15 @@ ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segm
           {"frame_from_input", asRows(segmenter.filter->getFrame().matrix())},
           {"origin", {cloud.origin.x(), cloud.origin.y(), cloud.origin.z()}},
           {"counts", describeCounts(cloud, segmenter, segmentation)},
-          {"elevation", describeElevation(segmentation.elevation)},
+          {"elevation",
+           describeElevation(segmentation.elevation.geometry, segmentation.elevation.emptyCellShare())},
           {"ground", describeGround(segmenter.fft)},
-          {"spectrum", describeSpectrum(segmenter.fft)},
+          {"spectrum", fft == nullptr
+                           ? ordered_json()
+                           : describeSpectrum(fft->getSpectrum(), fft->getCutoff(), fft->getSpectrumPeaks())},
           {"scores", describeScores(segmentation.confusion)},
           {"warnings", warnings},
-          {"seconds", seconds}};
+          {"seconds", describeSeconds(progress)}};
 }
 
 void printSummary(std::ostream& out, const ordered_json& report) {

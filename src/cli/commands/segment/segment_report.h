@@ -10,6 +10,14 @@
 
 namespace pcl_fft_ground::cli {
 
+/// Parts of report.json.
+nlohmann::ordered_json describeUp(const UpDirection& up);
+nlohmann::ordered_json describeScores(const std::optional<core::Confusion>& confusion);
+nlohmann::ordered_json describeElevation(const core::GridGeometry& cells, double empty_share);
+nlohmann::ordered_json describeSpectrum(const core::Spectrum& spectrum, const core::Cutoff& cutoff,
+                                        const std::vector<core::SpectrumPeak>& peaks);
+nlohmann::ordered_json describeSeconds(const Progress& progress);
+
 /// The content of report.json. Numbers that do not exist (a rate without objects) are null.
 nlohmann::ordered_json makeReport(const std::string& input, const Cloud& cloud, const Segmenter& segmenter,
                                   const Segmentation& segmentation, nlohmann::ordered_json parameters,
