@@ -66,7 +66,7 @@ void scanSite(CloudStream& stream, const ReadOptions& reading, const SiteRequest
   const FileSample sample = sampleOfFile(stream);
   site.origin = sample.origin;
   site.bounds = core::SiteBounds(sample.points);
-  core::StatisticsInParts statistics;
+  core::BoundsInParts bounds;
   std::set<double> labels;
   std::uint64_t finite = 0;
   eachPart(
@@ -74,12 +74,12 @@ void scanSite(CloudStream& stream, const ReadOptions& reading, const SiteRequest
       [&](std::size_t, const SitePart& part) {
         const core::RawPoints points = rawPoints(*part.cloud.points);
         for (Eigen::Index n = 0; n < points.cols(); ++n) finite += points.col(n).allFinite() ? 1U : 0U;
-        statistics.add(site.bounds.usedOf(points));
+        bounds.add(site.bounds.usedOf(points));
         gatherLabels(part.labels, labels);
       },
-      [&](double share) { advance(0.35 * share); });
-  site.used = static_cast<std::uint64_t>(statistics.points());
-  site.input_bounds = statistics.statistics().bounds;
+      [&](double share) { advance(0.2 * share); });
+  site.used = static_cast<std::uint64_t>(bounds.points());
+  site.input_bounds = bounds.bounds();
   site.far = finite - site.used;
   if (site.used == 0)
     throw WorkError(stream.path() + ": none of its " + std::to_string(stream.points()) +
@@ -88,16 +88,24 @@ void scanSite(CloudStream& stream, const ReadOptions& reading, const SiteRequest
   site.meaning = verdict.meaning;
   site.label_fault = verdict.fault;
 
+  core::StatisticsInParts in_parts(bounds);
+  eachPart(
+      stream, site.origin,
+      [&](std::size_t, const SitePart& part) {
+        in_parts.add(site.bounds.usedOf(rawPoints(*part.cloud.points)));
+      },
+      [&](double share) { advance(0.2 + 0.2 * share); });
+  const core::PointStatistics statistics = in_parts.statistics();
   core::FrameParameters parameters = request.frame;
   if (request.sensor) parameters.sensor_position = *request.sensor - site.origin;
-  site.up = core::estimateUp(site.bounds.usedOf(sample.points), statistics.statistics(), parameters);
-  core::LevelFrameInParts frame(statistics.statistics(), site.up.axis);
+  site.up = core::estimateUp(site.bounds.usedOf(sample.points), statistics, parameters);
+  core::LevelFrameInParts frame(statistics, site.up.axis);
   eachPart(
       stream, site.origin,
       [&](std::size_t, const SitePart& part) {
         frame.add(site.bounds.usedOf(rawPoints(*part.cloud.points)));
       },
-      [&](double share) { advance(0.35 + 0.3 * share); });
+      [&](double share) { advance(0.4 + 0.25 * share); });
   const core::LevelFrameInParts::Result level = frame.result(parameters.yaw);
   site.frame_from_input = level.frame_from_input;
   site.level_bounds = level.bounds;

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+
 #include <vector>
+#include "scan/moments_in_parts.h"
 
 #include "pcl_fft_ground/core/scan/threads.h"
 
@@ -129,26 +131,35 @@ double wholeOrigin(std::vector<double> coordinates) {
   return std::abs(*middle) > LARGE_COORDINATE ? std::round(*middle) : 0;
 }
 
-PointStatistics summarise(const PointsView& points) {
-  PointStatistics result;
-  result.bounds = boundsOf(points);
-  const Eigen::Array3d low = result.bounds.low;
-  result.mean = low;
-  const double extent = (result.bounds.high - result.bounds.low).maxCoeff();
-  if (extent == 0) return result;
+MomentsInParts::MomentsInParts(const Bounds& bounds, Eigen::Index points) : points_(points), bounds_(bounds) {
+  const double extent = (bounds.high - bounds.low).maxCoeff();
+  if (extent > 0) steps_ = std::ldexp(1.0, quantisationBits(points)) / extent;
+}
 
-  const double steps = std::ldexp(1.0, quantisationBits(points.cols())) / extent;
+void MomentsInParts::add(const PointsView& part) {
+  if (steps_ == 0) return;
+  const IntegerMoments moments = integerMoments(part, bounds_.low, static_cast<float>(steps_));
+  for (std::size_t k = 0; k < sums_.size(); ++k) sums_[k] += moments.sums[k];
+}
+
+PointStatistics MomentsInParts::statistics() const {
+  PointStatistics result;
+  result.bounds = bounds_;
+  result.mean = bounds_.low;
+  if (steps_ == 0) return result;
   IntegerMoments moments;
-  for (const IntegerMoments& part :
-       resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
-         return integerMoments(points.middleCols(begin, end - begin), low, static_cast<float>(steps));
-       }))
-    moments.add(part);
-  const auto n = static_cast<double>(points.cols());
+  moments.sums = sums_;
+  const auto n = static_cast<double>(points_);
   // The casts round down: half a step brings the mean back to the middle.
-  result.mean = low + (meanOf(moments, n).array() + 0.5) / steps;
-  result.covariance = covarianceOf(moments, n) / (steps * steps);
+  result.mean = bounds_.low + (meanOf(moments, n).array() + 0.5) / steps_;
+  result.covariance = covarianceOf(moments, n) / (steps_ * steps_);
   return result;
+}
+
+PointStatistics summarise(const PointsView& points) {
+  MomentsInParts moments(boundsOf(points), points.cols());
+  moments.add(points);
+  return moments.statistics();
 }
 
 }  // namespace pcl_fft_ground::core

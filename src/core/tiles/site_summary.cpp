@@ -8,16 +8,12 @@
 #include "pcl_fft_ground/core/scan/far_points.h"
 #include "scan/hull_filter.h"
 #include "scan/level_frame.h"
+#include "scan/moments_in_parts.h"
 
 namespace pcl_fft_ground::core {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
-
-/// The values as the coordinates of points hold them.
-Eigen::Array3d asFloats(const Eigen::Array3d& values) {
-  return values.cast<float>().cast<double>();
-}
 
 }  // namespace
 
@@ -38,36 +34,26 @@ Points SiteBounds::usedOf(const RawPoints& part) const {
   return used;
 }
 
-void StatisticsInParts::add(const PointsView& part) {
+void BoundsInParts::add(const PointsView& part) {
   if (part.cols() == 0) return;
   const Bounds bounds = boundsOf(part);
-  if (points_ == 0) {
-    bounds_ = bounds;
-    first_ = part.col(0).cast<double>();
-  }
+  if (points_ == 0) bounds_ = bounds;
   bounds_.low = bounds_.low.min(bounds.low);
   bounds_.high = bounds_.high.max(bounds.high);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  for (Eigen::Index n = 0; n < part.cols(); ++n) {
-    const Eigen::Vector3d d = part.col(n).cast<double>() - first_;
-    sum += d;
-    products += d * d.transpose();
-  }
-  sum_ += sum;
-  products_ += products;
   points_ += part.cols();
 }
 
+StatisticsInParts::StatisticsInParts(const BoundsInParts& bounds)
+    : moments_(std::make_unique<MomentsInParts>(bounds.bounds(), bounds.points())) {}
+
+StatisticsInParts::~StatisticsInParts() = default;
+
+void StatisticsInParts::add(const PointsView& part) {
+  moments_->add(part);
+}
+
 PointStatistics StatisticsInParts::statistics() const {
-  PointStatistics result;
-  if (points_ == 0) return result;
-  const auto count = static_cast<double>(points_);
-  const Eigen::Vector3d mean = sum_ / count;
-  result.bounds = bounds_;
-  result.mean = first_ + mean;
-  result.covariance = products_ / count - mean * mean.transpose();
-  return result;
+  return moments_->statistics();
 }
 
 LevelFrameInParts::LevelFrameInParts(const PointStatistics& statistics, const Eigen::Vector3d& up)
@@ -77,9 +63,15 @@ void LevelFrameInParts::add(const PointsView& part) {
   if (part.cols() == 0) return;
   const Eigen::Isometry3d level = levelFrame(statistics_, up_, 0);
   const HorizontalProjection projection{level.linear().topRows<2>(), statistics_.mean};
-  std::vector<Eigen::Vector2d> candidates = outermostPoints(part, projection);
-  candidates.insert(candidates.end(), hull_.begin(), hull_.end());
-  hull_ = convexHull(std::move(candidates));
+  Points candidates(3, outermost_.cols() + part.cols());
+  candidates << outermost_, part;
+  hull_ = convexHull(outermostPoints(candidates, projection));
+  std::vector<Eigen::Index> corners;
+  for (const Eigen::Index n : HullFilter(hull_, projection).outside(candidates)) {
+    const Eigen::Vector2d place = projection(candidates.col(n));
+    if (std::find(hull_.begin(), hull_.end(), place) != hull_.end()) corners.push_back(n);
+  }
+  outermost_ = Points(candidates(Eigen::all, corners));
   for (Eigen::Index n = 0; n < part.cols(); ++n) {
     const double height = level.linear().row(2).dot(part.col(n).cast<double>()) + level.translation().z();
     lowest_ = std::min(lowest_, height);
@@ -91,15 +83,9 @@ LevelFrameInParts::Result LevelFrameInParts::result(Yaw yaw) const {
   const double angle = yawOf(yaw, statistics_, up_, hull_);
   Result result{levelFrame(statistics_, up_, angle), {}};
   if (hull_.empty()) return result;
-  const Eigen::Rotation2Dd turned(-angle);
-  Eigen::Array2d low = Eigen::Array2d::Constant(INFINITE), high = -low;
-  for (const Eigen::Vector2d& corner : hull_) {
-    const Eigen::Array2d p = turned * corner;
-    low = low.min(p);
-    high = high.max(p);
-  }
-  result.bounds.low = asFloats({low.x(), low.y(), lowest_});
-  result.bounds.high = asFloats({high.x(), high.y(), highest_});
+  result.bounds = boundsOf(transformed(outermost_, result.frame_from_input));
+  result.bounds.low.z() = static_cast<double>(static_cast<float>(lowest_));
+  result.bounds.high.z() = static_cast<double>(static_cast<float>(highest_));
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <vector>
 
 #include "pcl_fft_ground/core/export.h"
@@ -38,19 +39,33 @@ class PCL_FFT_GROUND_CORE_EXPORT SiteBounds {
   Bounds within_;
 };
 
-/// Bounds, centroid and covariance of points that come in parts.
-class PCL_FFT_GROUND_CORE_EXPORT StatisticsInParts {
+/// Bounds and number of points that come in parts.
+class PCL_FFT_GROUND_CORE_EXPORT BoundsInParts {
  public:
   void add(const PointsView& part);
   Eigen::Index points() const { return points_; }
-  PointStatistics statistics() const;
+  const Bounds& bounds() const { return bounds_; }
 
  private:
   Eigen::Index points_ = 0;
   Bounds bounds_;
-  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();  // the others count from it: no digits are lost
-  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d products_ = Eigen::Matrix3d::Zero();
+};
+
+class MomentsInParts;
+
+/// summarise() for points that come in parts, bit for bit.
+class PCL_FFT_GROUND_CORE_EXPORT StatisticsInParts {
+ public:
+  /// \param bounds of all points, and how many there are
+  explicit StatisticsInParts(const BoundsInParts& bounds);
+  ~StatisticsInParts();
+  void add(const PointsView& part);
+
+  /// Of all points, once they are all added.
+  PointStatistics statistics() const;
+
+ private:
+  std::unique_ptr<MomentsInParts> moments_;
 };
 
 /// The level frame of points that come in parts, and their bounds in it.
@@ -70,6 +85,7 @@ class PCL_FFT_GROUND_CORE_EXPORT LevelFrameInParts {
  private:
   PointStatistics statistics_;
   Eigen::Vector3d up_;
+  Points outermost_;                   // those points among which are the corners of the hull
   std::vector<Eigen::Vector2d> hull_;  // seen along up, before it is turned about it
   double lowest_, highest_;
 };
