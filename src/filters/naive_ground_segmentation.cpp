@@ -5,5 +5,5 @@
 
 PCL_INSTANTIATE(ExternGroundSegmentation, PCL_XYZ_POINT_TYPES)
 PCL_INSTANTIATE_ExternGroundSegmentation(pcl::PCLPointCloud2)
-PCL_INSTANTIATE(NaiveGroundSegmentation, PCL_XYZ_POINT_TYPES)
-PCL_INSTANTIATE_NaiveGroundSegmentation(pcl::PCLPointCloud2)
+    PCL_INSTANTIATE(NaiveGroundSegmentation, PCL_XYZ_POINT_TYPES)
+        PCL_INSTANTIATE_NaiveGroundSegmentation(pcl::PCLPointCloud2)

@@ -5,5 +5,5 @@
 
 PCL_INSTANTIATE(ExternGroundSegmentation, PCL_XYZ_POINT_TYPES)
 PCL_INSTANTIATE_ExternGroundSegmentation(pcl::PCLPointCloud2)
-PCL_INSTANTIATE(PlanarGroundSegmentation, PCL_XYZ_POINT_TYPES)
-PCL_INSTANTIATE_PlanarGroundSegmentation(pcl::PCLPointCloud2)
+    PCL_INSTANTIATE(PlanarGroundSegmentation, PCL_XYZ_POINT_TYPES)
+        PCL_INSTANTIATE_PlanarGroundSegmentation(pcl::PCLPointCloud2)

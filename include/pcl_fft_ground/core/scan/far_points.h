@@ -26,8 +26,8 @@ namespace pcl_fft_ground::core {
 PCL_FFT_GROUND_CORE_EXPORT std::vector<Eigen::Index> findFarPoints(const PointsView& points,
                                                                    const PointStatistics& statistics);
 
-/// Where the points of a scan may lie that are not far from all others, in their frame [m]; without bounds for
-/// fewer than 8 points.
+/// Where the points of a scan may lie that are not far from all others, in their frame [m]; without bounds
+/// for fewer than 8 points.
 PCL_FFT_GROUND_CORE_EXPORT Bounds reachOfScan(const PointsView& points);
 
 }  // namespace pcl_fft_ground::core
