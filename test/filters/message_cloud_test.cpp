@@ -97,7 +97,8 @@ TEST(MessageCloud, TheSensorStandsInTheCoordinatesOfTheCloud) {
 
 TEST(MessageCloud, APointTypeWithDoublesKeepsTheirDetailToo) {
   pcl::PointCloud<WidePoint>::Ptr cloud(new pcl::PointCloud<WidePoint>);
-  for (const WidePoint& p : *boxesAt(FAR_AWAY)) cloud->push_back(p);
+  const auto boxes = boxesAt(FAR_AWAY);
+  for (const WidePoint& p : *boxes) cloud->push_back(p);
   const impl::IndexedPoints<WidePoint> points(*cloud, nullptr);
   EXPECT_NEAR((points.origin() - FAR_AWAY).head<2>().norm(), 0, 5);
   const Eigen::Vector3d first(cloud->front().x, cloud->front().y, cloud->front().z);
