@@ -1,9 +1,10 @@
 #include "ground/robust_choices.h"
 
-#include "pcl_fft_ground/core/ground/robust_ground.h"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "ground/robust_clearance.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -50,6 +51,47 @@ double chooseFinestWavelength(const RobustParameters& parameters, double max_obj
 /// times this distance.
 double pointSpacing(double cell_size, Eigen::Index observed, Eigen::Index points) {
   return cell_size * std::min(1.0, std::sqrt(static_cast<double>(observed) / static_cast<double>(points)));
+}
+
+/// How many points lie in each of equal steps above the ground, and below it; what lies further below is in
+/// the last step.
+struct ClearanceCounts {
+  static constexpr std::size_t STEPS = 256;
+  std::array<std::size_t, STEPS> above{}, below{};
+};
+
+ClearanceCounts clearancesOf(const PointsView& points, const RobustGround& ground) {
+  ClearanceCounts counts;
+  const Clearance clearance(ground);
+  const auto per_metre = static_cast<float>(ClearanceCounts::STEPS / ground.most_tolerance);
+  const auto deepest = static_cast<float>(ground.depth_tolerance);
+  const auto count = [&](float distance, std::array<std::size_t, ClearanceCounts::STEPS>& steps) {
+    if (distance <= 0) return;
+    const float step = std::min(distance * per_metre, static_cast<float>(ClearanceCounts::STEPS));
+    ++steps[std::min(static_cast<std::size_t>(step), ClearanceCounts::STEPS - 1)];
+  };
+  Clearance::Block block;
+  for (std::size_t begin = 0; begin < static_cast<std::size_t>(points.cols()); begin += block.count) {
+    clearance.read(points, begin, block);
+    for (std::size_t n = 0; n < block.count; ++n) {
+      if (block.above[n] * per_metre < ClearanceCounts::STEPS) count(block.above[n], counts.above);
+      if (block.below[n] <= deepest) count(block.below[n], counts.below);
+    }
+  }
+  return counts;
+}
+
+/// The height from which to call points objects with the least expected harm, in steps, by what lies below.
+std::size_t leastHarm(const ClearanceCounts& counts) {
+  constexpr long FALSE_OBJECT = 2;  // as bad as so many objects called ground
+  std::size_t best = 0;
+  long harm = 0, least = 0;
+  for (std::size_t step = 0; step < ClearanceCounts::STEPS; ++step) {
+    harm +=
+        static_cast<long>(counts.above[step]) - (1 + FALSE_OBJECT) * static_cast<long>(counts.below[step]);
+    if (harm < least) least = harm, best = step + 1;
+  }
+  return best;
 }
 
 }  // namespace
@@ -103,6 +145,19 @@ void chooseTolerances(const RobustParameters& parameters, const RobustPlan& plan
       parameters.height_tolerance.value_or(std::max(noise, std::min(usual, MOST_SCALES * spread)));
   ground.slope_tolerance = SPACINGS * pointSpacing(plan.cells.cell_size, observed, plan.points);
   ground.depth_tolerance = std::max(USUAL_DEPTH * ground.max_object_size, DEPTH_SCALES * ground.scale);
+}
+
+void widenTolerance(const RobustParameters& parameters, const PointsView& points, RobustGround& ground) {
+  if (parameters.height_tolerance || !(ground.most_tolerance > 0)) return;
+  const double wider = ground.most_tolerance * static_cast<double>(leastHarm(clearancesOf(points, ground))) /
+                       ClearanceCounts::STEPS;
+  if (wider <= ground.tolerance) return;
+  ground.tolerance = wider;
+  RobustChoice& choice =
+      *std::find_if(ground.choices.begin(), ground.choices.end(),
+                    [](const RobustChoice& known) { return known.parameter == "height_tolerance"; });
+  choice.value = wider;
+  choice.reason = "as many points lie as far below the ground";
 }
 
 }  // namespace pcl_fft_ground::core

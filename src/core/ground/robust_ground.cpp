@@ -118,6 +118,7 @@ RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometr
   const RobustPlan plan = planRobustGround(parameters, boundsOf(points), points.cols());
   RobustGround ground = fitRobustGround(points, frame_from_input, plan, parameters);
   chooseTolerances(parameters, plan, ground.elevation.observed.count(), ground);
+  widenTolerance(parameters, plannedSample(points, plan), ground);
   return ground;
 }
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pcl_fft_ground/core/ground/robust_ground.h"
+#include "scan/point_block.h"
+
+namespace pcl_fft_ground::core {
+
+/** How far points are clear of the ground, at a right angle to its surface.
+ *
+ * On a slope a height is lessened by what places that are not told apart may differ in height. Above, the
+ * ground may bend up to the lowest point of a cell, but no further than the greatest tolerance allows, and
+ * climb its own steps.
+ */
+class Clearance {
+ public:
+  /// \param ground outlives this; its surface has cells
+  explicit Clearance(const RobustGround& ground);
+
+  /// Of some consecutive points [m].
+  struct Block {
+    std::array<float, PointBlock::SIZE> above, below;
+    std::size_t count = 0;
+  };
+
+  /// Takes up to PointBlock::SIZE points.
+  void read(const PointsView& points, std::size_t begin, Block& block) const;
+
+ private:
+  /// Between four cell centres: the bilinear surface, a + b u + c v + d u v, and how its slope s shortens
+  /// what is measured at a right angle.
+  struct Patch {
+    float a, b, c, d;
+    float shortening;  // 1 / sqrt(1 + s^2)
+    float lean;        // height by which places differ that are not told apart [m]
+
+    float heightAt(float u, float v) const { return a + b * u + (c + d * u) * v; }
+  };
+
+  Patch patchAt(const RobustGround& ground, Eigen::Index i, Eigen::Index j) const;
+  float allowanceOf(const RobustGround& ground, Eigen::Index cell) const;
+
+  // One patch more along each axis than there are pairs of cells: beyond the outermost centres the border
+  // continues.
+  int rows_, cols_;
+  Eigen::Array2d first_;  // lower corner of patch (0, 0)
+  double per_metre_;
+  std::vector<Patch> patches_;
+  std::vector<float> allowances_;  // of each cell: how far the ground may reach above its surface [m]
+};
+
+}  // namespace pcl_fft_ground::core
