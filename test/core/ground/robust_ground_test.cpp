@@ -284,5 +284,30 @@ TEST(RobustGround, OfDegenerateCloudsIsFinite) {
     }
 }
 
+/// Level ground, a fifth of whose points lie up to 0.06 m off: on both sides, or above only.
+Points groundWithTail(bool is_symmetric) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> share(0, 1);
+  std::normal_distribution<float> noise(0, 0.005F);
+  Points points(3, 60000);
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    const float off = share(random) < 0.2F ? 0.06F * share(random) : 0.0F;
+    const float sign = is_symmetric && share(random) < 0.5F ? -1.0F : 1.0F;
+    points.col(n) = Eigen::Vector3f(10 * share(random), 10 * share(random), noise(random) + sign * off);
+  }
+  return points;
+}
+
+TEST(RobustTolerance, WidensWhereAsMuchLiesBelow) {
+  const RobustGround ground = groundOf(groundWithTail(true), largestObject(8));
+  EXPECT_GT(ground.tolerance, 0.05);
+  EXPECT_LE(ground.tolerance, ground.most_tolerance);
+}
+
+TEST(RobustTolerance, StaysWhereWhatIsOffLiesAbove) {
+  const RobustGround ground = groundOf(groundWithTail(false), largestObject(8));
+  EXPECT_NEAR(ground.tolerance, 4.25 * ground.scale, 1e-6);
+}
+
 }  // namespace
 }  // namespace pcl_fft_ground::core
