@@ -7,7 +7,9 @@
 #include <sstream>
 #include <utility>
 
+#include "errors.h"
 #include "evaluate_fixture.h"
+#include "methods/segmenter.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -189,6 +191,53 @@ TEST_F(EvaluateCommand, AMethodThatFailsHasItsReasonInTheTable) {
     for (const std::string& word : lineOf(table, method)) line += (line.empty() ? "" : " ") + word;
     EXPECT_EQ(line, method + " " + reason);
   }
+}
+
+const Words PCL_SETTINGS{"--pmf-cell-size",        "0.04", "--pmf-max-window-size", "12",
+                         "--pmf-initial-distance", "0.06", "--pmf-slope",           "0.3"};
+
+TEST_F(EvaluateCommand, PclsOwnFiltersAreComparedWith) {
+  pcl::PointCloud<pcl::PointXYZL> cloud = boxScan();
+  cloud[5].x = NAN;  // PCL's own crash on the one, and ask for a grid around the other
+  cloud[7].z = 1e7f;
+  Words words{makeCloud("box.pcd", cloud),
+              "--methods",
+              "pcl-approximate-pmf,pcl-pmf,pcl-mlesac-plane",
+              "--json",
+              "--quiet",
+              "--distance-threshold",
+              "0.05"};
+  words.insert(words.end(), PCL_SETTINGS.begin(), PCL_SETTINGS.end());
+  const json all = json::parse(run(runEvaluate, words).out);
+  ASSERT_EQ(all["results"].size(), 3u);
+  EXPECT_EQ(all["results"][0]["method"], "pcl-approximate-pmf");
+  for (const json& row : all["results"]) {
+    SCOPED_TRACE(row.dump());
+    ASSERT_FALSE(row.contains("failure"));
+    EXPECT_GT(row["tpr"].get<double>(), 0.95);
+    EXPECT_GT(row["tnr"].get<double>(), 0.95);
+    EXPECT_TRUE(row["surface_rmse"].is_null());
+  }
+}
+
+TEST_F(EvaluateCommand, PclsFiltersThatCannotRunHaveTheReasonInTheTable) {
+  const std::string cloud = makeLabelledScan();
+  const auto failureOf = [&](const Words& more) {
+    Words words{cloud, "--methods", "pcl-pmf", "--json", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return json::parse(run(runEvaluate, words).out)["results"][0].value("failure", "");
+  };
+  // All points in each window: 1e8 pairs for each of many windows.
+  EXPECT_EQ(failureOf({"--pmf-max-window-size", "100000", "--pmf-base", "1.1", "--pcl-time-limit", "0.05"}),
+            "not run: more than 0.05 s (--pcl-time-limit)");
+  EXPECT_NE(failureOf({"--pmf-cell-size", "1e-6"}).find("use larger cells"), std::string::npos);
+}
+
+TEST_F(EvaluateCommand, PclsFiltersRunOnlyWhereAskedFor) {
+  const json all = evaluateAsJson({makeLabelledScan()});
+  EXPECT_EQ(all["results"].size(), methodNames().size());
+  for (const json& row : all["results"]) EXPECT_NE(row["method"].get<std::string>().substr(0, 3), "pcl");
+  EXPECT_THROW(segment(makeScan(), {"--method", "pcl-pmf"}), UsageError);
 }
 
 TEST_F(EvaluateCommand, WarningsGoToStandardErrorUnlessQuiet) {

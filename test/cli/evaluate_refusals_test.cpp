@@ -48,6 +48,13 @@ TEST_F(EvaluateRefusals, RefusesWrongUsageNamingIt) {
   expectNamed({cloud, "--optimize-coefficients", "maybe"}, "on, off");
   expectNamed({cloud, "--voxel-height", "0"}, "--voxel-height");
   expectNamed({cloud, "--smoothness", "-1"}, "--smoothness");
+  expectNamed({cloud, "--methods", "pcl-pmf", "--pmf-base", "1"}, "--pmf-base");
+  expectNamed({cloud, "--methods", "pcl-pmf", "--pmf-exponential", "off", "--pmf-base", "0.5"}, "--pmf-base");
+  expectNamed({cloud, "--methods", "pcl-approximate-pmf", "--pmf-cell-size", "0"}, "--pmf-cell-size");
+  expectNamed({cloud, "--methods", "pcl-approximate-pmf", "--pmf-max-window-size", "0"},
+              "--pmf-max-window-size");
+  expectNamed({cloud, "--methods", "pcl-mlesac-plane", "--pcl-time-limit", "0"}, "--pcl-time-limit");
+  expectNamed({cloud, "--methods", "pcl-mlesac-plane", "--distance-threshold", "0"}, "--distance-threshold");
   expectNamed({cloud, "--csv", ""}, "--csv");
   expectNamed({cloud, "--pictures", ""}, "--pictures");
   expectNamed({}, "cloud");

@@ -84,6 +84,15 @@ TEST(EvaluationTable, ContinuesBelowWhereThePageIsFull) {
   }
 }
 
+TEST(EvaluationTable, LongNamesOfMethodsFit) {
+  std::vector<EvaluationRow> rows;
+  for (const std::string cloud : {"a.pcd", "b.pcd", "c.pcd", "d.pcd"})
+    rows.push_back(makeRow(cloud, "pcl-approximate-pmf", {9, 2, 8, 1}));
+  const std::string table = tableOf(rows);
+  EXPECT_EQ(occurrences(table, "  pcl-approximate-pmf "), 4 + 1 + 1);
+  for (const std::string& line : linesOf(table)) EXPECT_LE(line.size(), 132u) << line;
+}
+
 TEST(EvaluationTable, CloudsOfOneNameHaveTheirPathsAsTitles) {
   const std::string table = tableOf(rowsOf({"one/scan.pcd", "two/scan.pcd", "two/other.pcd"}));
   EXPECT_NE(table.find("one/scan.pcd\n"), std::string::npos);

@@ -12,25 +12,6 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr std::array<std::pair<const char*, bool>, 2> SWITCH{{{"on", true}, {"off", false}}};
-
-void setUpPlanar(PlanarGroundSegmentation<Point>& planar, ParameterSetter& parameters) {
-  parameters.set<double>(
-      "distance-threshold", [&](double v) { planar.setDistanceThreshold(v); },
-      [&] { return planar.getDistanceThreshold(); });
-  parameters.setCount(
-      "max-iterations", [&](unsigned v) { planar.setMaxIterations(static_cast<int>(v)); },
-      [&] { return planar.getMaxIterations(); });
-  parameters.set<double>(
-      "probability", [&](double v) { planar.setProbability(v); }, [&] { return planar.getProbability(); });
-  parameters.set<std::string>(
-      "optimize-coefficients",
-      [&](const auto& v) { planar.setOptimizeCoefficients(valueNamed("optimize-coefficients", v, SWITCH)); },
-      [&] { return nameOf(planar.getOptimizeCoefficients(), SWITCH); });
-  parameters.setCount(
-      "plane-seed", [&](unsigned v) { planar.setSeed(v); }, [&] { return planar.getSeed(); });
-}
-
 void setUpGrid(GridGroundSegmentation<Point>& grid, ParameterSetter& parameters) {
   parameters.set<double>(
       "cell-size", [&](double v) { grid.setCellSize(v); }, [&] { return grid.getCellSize(); });
@@ -59,6 +40,23 @@ Segmenter make(const po::variables_map& values, const SetUp& set_up) {
 
 }  // namespace
 
+void setUpPlanar(PlanarGroundSegmentation<Point>& planar, ParameterSetter& parameters) {
+  parameters.set<double>(
+      "distance-threshold", [&](double v) { planar.setDistanceThreshold(v); },
+      [&] { return planar.getDistanceThreshold(); });
+  parameters.setCount(
+      "max-iterations", [&](unsigned v) { planar.setMaxIterations(static_cast<int>(v)); },
+      [&] { return planar.getMaxIterations(); });
+  parameters.set<double>(
+      "probability", [&](double v) { planar.setProbability(v); }, [&] { return planar.getProbability(); });
+  parameters.set<std::string>(
+      "optimize-coefficients",
+      [&](const auto& v) { planar.setOptimizeCoefficients(valueNamed("optimize-coefficients", v, SWITCH)); },
+      [&] { return nameOf(planar.getOptimizeCoefficients(), SWITCH); });
+  parameters.setCount(
+      "plane-seed", [&](unsigned v) { planar.setSeed(v); }, [&] { return planar.getSeed(); });
+}
+
 Segmenter makeNaive(const po::variables_map& values) {
   return make<NaiveGroundSegmentation<Point>>(values, [](auto&, ParameterSetter&) {});
 }
@@ -81,12 +79,13 @@ void addOtherOptions(po::options_description& options) {
   po::options_description others("Other methods", HELP_WIDTH, HELP_TEXT_WIDTH);
   auto add_other = others.add_options();
   add_other("distance-threshold", number()->value_name("M"),
-            "planar: distance up to which a point lies on the plane [m], above 0 (0.02)");
-  add_other("max-iterations", count(), "planar: most planes to try, at least 1 (1000)");
-  add_other("probability", number()->value_name("P"),
-            "planar: probability of having tried a sample without outliers, in (0, 1) (0.99)");
+            "planar, pcl-mlesac-plane: distance up to which a point lies on the plane [m], above 0 (0.02)");
+  add_other("max-iterations", count(), "planar, pcl-mlesac-plane: most planes to try, at least 1 (1000)");
+  add_other(
+      "probability", number()->value_name("P"),
+      "planar, pcl-mlesac-plane: probability of having tried a sample without outliers, in (0, 1) (0.99)");
   add_other("optimize-coefficients", po::value<std::string>()->value_name("ON|OFF"),
-            "planar: on fits the plane to all of its inliers in the end (on)");
+            "planar, pcl-mlesac-plane: on fits the plane to all of its inliers in the end (on)");
   add_other("plane-seed", count(), "planar: seed of the samples (1)");
   add_other("voxel-height", number()->value_name("M"), "grid: vertical size of a voxel [m], above 0 (0.02)");
   add_other(

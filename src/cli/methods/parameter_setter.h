@@ -15,6 +15,9 @@
 
 namespace pcl_fft_ground::cli {
 
+/// How a switch is given.
+constexpr std::array<std::pair<const char*, bool>, 2> SWITCH{{{"on", true}, {"off", false}}};
+
 /// The value that a word stands for.
 template <typename Value, std::size_t N>
 Value valueNamed(const std::string& option, const std::string& word,

@@ -18,14 +18,28 @@ namespace {
 namespace po = boost::program_options;
 using nlohmann::ordered_json;
 
-/// The methods that there are, in the order of the paper's tables.
-constexpr std::array<Method, 6> REGISTRY{
-    {{"naive", "", Tolerance::NONE, addOtherOptions, makeNaive},
-     {"planar", "", Tolerance::NONE, addOtherOptions, makePlanar},
-     {"grid", "", Tolerance::NONE, addOtherOptions, makeGrid},
-     {"graph-cut", "", Tolerance::OWN, addOtherOptions, makeGraphCut},
-     {"fft-lowpass", "the published method", Tolerance::NONE, addFrequencyOptions, makeLowPass},
-     {"fft", "the robust one", Tolerance::OWN, addFrequencyOptions, makeRobust}}};
+/// The methods that there are: those of the paper in the order of its tables, those for comparison last.
+constexpr std::array<Method, 9> REGISTRY{
+    {{"naive", "", Tolerance::NONE, Purpose::USE, addOtherOptions, makeNaive},
+     {"planar", "", Tolerance::NONE, Purpose::USE, addOtherOptions, makePlanar},
+     {"grid", "", Tolerance::NONE, Purpose::USE, addOtherOptions, makeGrid},
+     {"graph-cut", "", Tolerance::OWN, Purpose::USE, addOtherOptions, makeGraphCut},
+     {"fft-lowpass", "the published method", Tolerance::NONE, Purpose::USE, addFrequencyOptions, makeLowPass},
+     {"fft", "the robust one", Tolerance::OWN, Purpose::USE, addFrequencyOptions, makeRobust},
+     {"pcl-pmf", "", Tolerance::OWN, Purpose::COMPARISON, addPclOptions, makePclPmf},
+     {"pcl-approximate-pmf", "", Tolerance::OWN, Purpose::COMPARISON, addPclOptions, makePclApproximatePmf},
+     {"pcl-mlesac-plane", "", Tolerance::OWN, Purpose::COMPARISON, addPclOptions, makePclMlesacPlane}}};
+
+bool isFor(const Method& method, const std::vector<Purpose>& purposes) {
+  return std::find(purposes.begin(), purposes.end(), method.purpose) != purposes.end();
+}
+
+std::vector<std::string> namesFor(const std::vector<Purpose>& purposes) {
+  std::vector<std::string> names;
+  for (const Method& method : REGISTRY)
+    if (isFor(method, purposes)) names.emplace_back(method.name);
+  return names;
+}
 
 constexpr std::array<std::pair<const char*, UpEstimation>, 3> UP_ESTIMATIONS{
     {{"auto", UpEstimation::AUTO},
@@ -125,43 +139,44 @@ ordered_json withChoices(ordered_json result, const std::vector<core::RobustChoi
   return result;
 }
 
-const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> result;
-    for (const Method& method : REGISTRY) result.push_back(method.name);
-    return result;
-  }();
-  return names;
+std::vector<std::string> methodNames(Purpose purpose) {
+  return namesFor({purpose});
 }
 
 std::string methodChoice() {
+  const std::vector<std::string> names = methodNames();
   std::string choice;
-  for (std::size_t n = 0; n < REGISTRY.size(); ++n) {
-    choice += n == 0 ? "" : n + 1 == REGISTRY.size() ? " or " : ", ";
-    choice += REGISTRY[n].name;
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    choice += n == 0 ? "" : n + 1 == names.size() ? " or " : ", ";
+    choice += names[n];
     if (*REGISTRY[n].note != '\0') choice += std::string(" (") + REGISTRY[n].note + ")";
   }
   return choice;
 }
 
-po::options_description segmenterOptions() {
+po::options_description segmenterOptions(const std::vector<Purpose>& purposes) {
   po::options_description options = commonOptions();
-  for (auto method = REGISTRY.rbegin(); method != REGISTRY.rend(); ++method) {
-    const bool is_added = std::any_of(REGISTRY.rbegin(), method, [&](const Method& other) {
-      return other.add_options == method->add_options;
-    });
-    if (method->add_options != nullptr && !is_added) method->add_options(options);
-  }
+  std::vector<void (*)(po::options_description&)> added;
+  const auto add = [&](Purpose purpose) {
+    for (auto method = REGISTRY.rbegin(); method != REGISTRY.rend(); ++method) {
+      const bool is_added = std::find(added.begin(), added.end(), method->add_options) != added.end();
+      if (method->purpose != purpose || method->add_options == nullptr || is_added) continue;
+      method->add_options(options);
+      added.push_back(method->add_options);
+    }
+  };
+  for (const Purpose purpose : purposes) add(purpose);
   return options;
 }
 
-Segmenter makeSegmenter(const std::string& name, const po::variables_map& values) {
+Segmenter makeSegmenter(const std::string& name, const po::variables_map& values,
+                        const std::vector<Purpose>& purposes) {
   if (values.count("max-object-size") != 0 && values.count("relative-max-object-size") != 0)
     throw UsageError("--max-object-size and --relative-max-object-size: allowed is one of the two");
-  const auto method =
-      std::find_if(REGISTRY.begin(), REGISTRY.end(), [&](const Method& m) { return m.name == name; });
+  const auto method = std::find_if(REGISTRY.begin(), REGISTRY.end(),
+                                   [&](const Method& m) { return m.name == name && isFor(m, purposes); });
   if (method == REGISTRY.end())
-    throw UsageError("--method " + name + ": allowed is one of " + joined(methodNames(), ", "));
+    throw UsageError("--method " + name + ": allowed is one of " + joined(namesFor(purposes), ", "));
   Segmenter segmenter = method->make(values);
   segmenter.method = name;
   segmenter.has_own_tolerance = method->tolerance == Tolerance::OWN;

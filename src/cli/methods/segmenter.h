@@ -33,18 +33,26 @@ struct Segmenter {
   nlohmann::ordered_json parametersInForce() const;
 };
 
-/// The methods that there are, by the names that the command line gives them, in the order of the paper's
-/// tables.
-const std::vector<std::string>& methodNames();
+/// What a method is there for.
+enum class Purpose {
+  USE,         ///< to be used, by all commands
+  COMPARISON,  ///< to be compared with, by `evaluate`; it tells no surface of the ground
+};
+
+/// The methods that there are for a purpose, by the names that the command line gives them, in the order of
+/// the paper's tables.
+std::vector<std::string> methodNames(Purpose purpose = Purpose::USE);
 
 /// The same as a sentence offers them: "naive, ... or fft (the robust one)".
 std::string methodChoice();
 
-/// The options that set a segmenter; they are spelled as the setters.
-boost::program_options::options_description segmenterOptions();
+/// The options that set the segmenters of these purposes; they are spelled as the setters.
+boost::program_options::options_description segmenterOptions(const std::vector<Purpose>& purposes = {
+                                                                 Purpose::USE});
 
 /// A segmenter with the options that concern its method; those of other methods are passed over.
 /// \throws UsageError naming the option, the value and what is allowed
-Segmenter makeSegmenter(const std::string& method, const boost::program_options::variables_map& values);
+Segmenter makeSegmenter(const std::string& method, const boost::program_options::variables_map& values,
+                        const std::vector<Purpose>& purposes = {Purpose::USE});
 
 }  // namespace pcl_fft_ground::cli

@@ -39,7 +39,7 @@ std::vector<Eigen::Vector3d> trueGroundOf(const Cloud& cloud) {
 /// Root mean square of the heights of the true ground above the surface [m].
 std::optional<double> surfaceError(const std::vector<Eigen::Vector3d>& true_ground,
                                    const core::GroundSurface& surface) {
-  if (true_ground.empty()) return std::nullopt;
+  if (true_ground.empty() || surface.height.size() == 0) return std::nullopt;
   double sum = 0;
   for (const Eigen::Vector3d& p : true_ground) sum += std::pow(surface.heightAbove(p), 2);
   return std::sqrt(sum / static_cast<double>(true_ground.size()));

@@ -22,6 +22,8 @@ namespace {
 namespace po = boost::program_options;
 using Names = std::vector<std::string>;
 
+const std::vector<Purpose> PURPOSES{Purpose::USE, Purpose::COMPARISON};
+
 constexpr const char* HELP_BEFORE = R"(Usage: pcl_fft_ground evaluate CLOUD... [options]
 
 Runs segmentation methods on labelled clouds (label 1 object, 0 ground, 2 not scored; the classes of LAS; others by
@@ -45,7 +47,9 @@ po::options_description commandOptions() {
   po::options_description options("General", HELP_WIDTH, HELP_TEXT_WIDTH);
   auto add = options.add_options();
   add("methods", po::value<std::string>()->value_name("NAMES"),
-      ("methods, parted by commas (" + joined(methodNames(), ",") + ")").c_str());
+      ("methods, parted by commas (" + joined(methodNames(), ",") +
+       "); also, to compare with, PCL's own: " + joined(methodNames(Purpose::COMPARISON), ", "))
+          .c_str());
   add("csv", po::value<std::string>()->value_name("FILE"), "write the table as CSV, too");
   add("pictures", po::value<std::string>()->value_name("DIR"),
       "draw a picture of each cloud to this directory, made if need be: the truth and each method's labels, "
@@ -88,7 +92,8 @@ void requireName(const po::variables_map& values, const std::string& option, con
 
 std::vector<Segmenter> makeSegmenters(const po::variables_map& values) {
   std::vector<Segmenter> segmenters;
-  for (const std::string& method : chosenMethods(values)) segmenters.push_back(makeSegmenter(method, values));
+  for (const std::string& method : chosenMethods(values))
+    segmenters.push_back(makeSegmenter(method, values, PURPOSES));
   return segmenters;
 }
 
@@ -185,7 +190,7 @@ std::vector<EvaluationRow> evaluateAll(const Names& clouds, std::vector<Segmente
 
 void runEvaluate(const std::vector<std::string>& arguments) {
   po::options_description shown;
-  shown.add(segmenterOptions()).add(readingOptions(Labels::USED)).add(commandOptions());
+  shown.add(segmenterOptions(PURPOSES)).add(readingOptions(Labels::USED)).add(commandOptions());
   po::options_description all;
   all.add(shown).add_options()("cloud", po::value<Names>());
   po::positional_options_description positional;

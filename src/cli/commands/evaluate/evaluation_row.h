@@ -14,7 +14,8 @@ struct EvaluationRow {
   std::string cloud;
   std::string method;
   core::Confusion confusion;
-  std::optional<double> surface_rmse;  ///< of the estimated ground surface against the true one [m]
+  std::optional<double> surface_rmse;  ///< of the estimated ground surface, where the method tells one,
+                                       ///< against the true one [m]
   double seconds = 0;                  ///< of the segmentation alone
   std::string failure;                 ///< why there are no scores; empty if there are
 };

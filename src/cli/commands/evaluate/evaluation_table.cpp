@@ -9,8 +9,7 @@
 namespace pcl_fft_ground::cli {
 namespace {
 
-constexpr int METHOD_WIDTH = 14;
-constexpr int MEASURE_WIDTH = 13;
+constexpr std::size_t METHOD_WIDTH = 14;  // at least
 constexpr std::size_t TABLE_ONE_MEASURES = 3;
 constexpr int RATE_WIDTH = 6;        // of a rate in Table I
 constexpr int GROUP_GAP = 3;         // between the clouds of Table I
@@ -56,22 +55,34 @@ double valueOf(const std::vector<EvaluationRow>& rows, const std::string& method
   return group.cloud.empty() ? meanOf(rows, method, measure) : measure.of(rowOf(rows, method, group.cloud));
 }
 
-std::ostream& startRow(std::ostream& out, const std::string& method) {
-  return out << std::left << std::setw(METHOD_WIDTH) << "  " + method << std::right;
+int methodWidthOf(const std::vector<EvaluationRow>& rows) {
+  std::size_t width = METHOD_WIDTH;
+  for (const EvaluationRow& row : rows) width = std::max(width, row.method.size() + 3);
+  return static_cast<int>(width);
+}
+
+int widthOf(const Measure& measure) {
+  constexpr std::size_t NUMBER = 9, GAP = 2;
+  return static_cast<int>(std::max(std::string(measure.name).size(), NUMBER) + GAP);
+}
+
+std::ostream& startRow(std::ostream& out, int width, const std::string& method) {
+  return out << std::left << std::setw(width) << "  " + method << std::right;
 }
 
 void printBlock(std::ostream& out, const std::vector<EvaluationRow>& rows, const Group& group) {
+  const int method_width = methodWidthOf(rows);
   out << group.title << '\n';
-  startRow(out, "");
-  for (const Measure& measure : measures()) out << std::setw(MEASURE_WIDTH) << measure.name;
+  startRow(out, method_width, "");
+  for (const Measure& measure : measures()) out << std::setw(widthOf(measure)) << measure.name;
   out << '\n';
   for (const std::string& method : distinct(rows, &EvaluationRow::method)) {
-    startRow(out, method);
+    startRow(out, method_width, method);
     const std::string failure = group.cloud.empty() ? "" : rowOf(rows, method, group.cloud).failure;
     if (!failure.empty()) out << "  " << failure;
     for (const Measure& measure : measures())
       if (failure.empty())
-        out << std::setw(MEASURE_WIDTH) << fixedText(valueOf(rows, method, group, measure));
+        out << std::setw(widthOf(measure)) << fixedText(valueOf(rows, method, group, measure));
     out << '\n';
   }
 }
@@ -85,17 +96,18 @@ std::string shortened(const std::string& title, std::size_t width) {
 void printSideBySide(std::ostream& out, const std::vector<EvaluationRow>& rows,
                      const std::vector<Group>& groups) {
   constexpr int WIDTH = TABLE_ONE_MEASURES * RATE_WIDTH;
-  startRow(out, "");
+  const int method_width = methodWidthOf(rows);
+  startRow(out, method_width, "");
   for (const Group& group : groups) out << std::setw(GROUP_GAP + WIDTH) << shortened(group.title, WIDTH);
   out << '\n';
-  startRow(out, "");
+  startRow(out, method_width, "");
   for (std::size_t n = 0; n < groups.size(); ++n) {
     out << std::setw(GROUP_GAP) << "";
     for (const char* name : {"TPR", "TNR", "F1"}) out << std::setw(RATE_WIDTH) << name;
   }
   out << '\n';
   for (const std::string& method : distinct(rows, &EvaluationRow::method)) {
-    startRow(out, method);
+    startRow(out, method_width, method);
     for (const Group& group : groups) {
       out << std::setw(GROUP_GAP) << "";
       for (std::size_t n = 0; n < TABLE_ONE_MEASURES; ++n)

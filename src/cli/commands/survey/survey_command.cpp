@@ -55,7 +55,7 @@ Exit status: 0 done, 1 the work failed, 2 wrong usage.
 )";
 
 void requireMethod(const std::string& name) {
-  const std::vector<std::string>& segmenters = methodNames();
+  const std::vector<std::string> segmenters = methodNames();
   if (name != DENSE_ICP &&
       std::find(segmenters.begin(), segmenters.end(), segmenterOf(name)) == segmenters.end())
     throw UsageError("--methods " + name + ": allowed are " + joined(segmenters, ", ") + ", " + DENSE_ICP +
