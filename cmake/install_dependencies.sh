@@ -3,12 +3,12 @@
 #
 #   cmake/install_dependencies.sh PURPOSE...
 #
-#   library tool tests packages benchmarks fftw documentation style fresh-system
+#   library tool python tests packages benchmarks fftw documentation style fresh-system
 #
 # Root is asked for (by sudo) only when something is missing. PCL_FFT_GROUND_SKIP_INSTALL=1 skips the whole step.
 set -eu
 
-purposes="library tool tests packages benchmarks fftw documentation style fresh-system"
+purposes="library tool python tests packages benchmarks fftw documentation style fresh-system"
 
 fail() {
   echo "install_dependencies.sh: $*" >&2
@@ -31,7 +31,8 @@ packages_of() {
   case "$1" in
     library) echo "libpcl-dev libeigen3-dev libboost-dev libflann-dev" ;;
     tool) echo "libboost-program-options-dev libcairo2-dev nlohmann-json3-dev fonts-dejavu-core" ;;
-    tests) echo "libgtest-dev xvfb xauth" ;;
+    python) echo "pybind11-dev python3-dev python3-numpy python3-matplotlib" ;;
+    tests) echo "libgtest-dev xvfb xauth gdal-bin" ;;
     benchmarks) echo "libbenchmark-dev" ;;
     fftw) echo "libfftw3-dev" ;;
     packages | documentation | style | fresh-system) ;;
@@ -67,6 +68,7 @@ install_dependencies.sh: this system is neither Debian nor Ubuntu, so nothing wa
   for SegmentICP)
   Eigen >= 3.4, Boost >= 1.71 (headers; program_options for the command), FLANN
   Cairo, nlohmann-json >= 3.9 and a sans-serif font for the command; GoogleTest >= 1.10 for the tests
+  pybind11, NumPy and Python's headers for the Python module; matplotlib for its example
 and run the same command again with PCL_FFT_GROUND_SKIP_INSTALL=1 in the environment.
 TEXT
   exit 1

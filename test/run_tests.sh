@@ -11,13 +11,14 @@ set -euo pipefail
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${PCL_FFT_GROUND_BUILD_DIR:-$checkout/build/tests}
 
-"$checkout/cmake/install_dependencies.sh" library tool tests packages
+"$checkout/cmake/install_dependencies.sh" library tool python tests packages
 jobs=$("$checkout/cmake/build_jobs.sh")
 
 echo "Configuring in $build"
 # For /usr, as Debian packages are; nothing is installed there.
 cmake -S "$checkout" -B "$build" -DCMAKE_BUILD_TYPE=Release -DPCL_FFT_GROUND_WERROR=ON -DCMAKE_INSTALL_PREFIX=/usr \
-  -DPCL_FFT_GROUND_BUILD_TOOL=ON -DPCL_FFT_GROUND_BUILD_TESTS=ON -DPCL_FFT_GROUND_BUILD_EXAMPLES=ON
+  -DPCL_FFT_GROUND_BUILD_TOOL=ON -DPCL_FFT_GROUND_BUILD_TESTS=ON -DPCL_FFT_GROUND_BUILD_EXAMPLES=ON \
+  -DPCL_FFT_GROUND_BUILD_PYTHON=ON
 
 echo "Building with $jobs job(s); the first time this takes some minutes"
 cmake --build "$build" --parallel "$jobs"

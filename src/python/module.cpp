@@ -1,4 +1,5 @@
 // `import pcl_fft_ground`: the segmenters on arrays of points.
+#include <pcl/console/print.h>
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -14,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
 #include "pcl_fft_ground/object_cluster_extraction.h"
 #include "pcl_fft_ground/version.h"
@@ -87,6 +89,7 @@ double defaultLeafSize(const Filter& filter) {
 }
 
 Result run(Filter& filter, const PointArray& xyz, const Clustering& clustering) {
+  const core::Threads threads(filter.getNumberOfThreads());
   Result result;
   filter.setInputCloud(xyz.points);
   filter.segment(result.ground, result.objects);
@@ -204,6 +207,7 @@ PYBIND11_MODULE(pcl_fft_ground, module) {
   using namespace pcl_fft_ground;
   using namespace pcl_fft_ground::python;
 
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // what it would say is raised or reported
   module.doc() = "Ground segmentation of 3D scans in the frequency domain.";
   module.attr("__version__") = PCL_FFT_GROUND_VERSION;
 
@@ -253,6 +257,7 @@ clusters: 'objects' tells touching objects apart, 'contact' does not; objects if
 leaf_size: side of the voxels that form segments [m]; the cell size if None.
 min_object_size: smallest object that is told apart from what it touches [m]; a share of the largest if None.
 min_cluster_size: points of the smallest segment.
+threads: how many share the work, 0 (one for each core) if None; the results are the same for every number.
 sensor: where the sensor stood, three numbers in the coordinates of xyz: on the upper side of the ground.
 
 Other keyword arguments are the command's options with _ in place of -: cell_size, height_tolerance,
@@ -264,4 +269,8 @@ object_height, step_height, smoothness.
 Returns a Segmentation. Raises ValueError naming the parameter, its value and what is allowed, TypeError for
 an unknown parameter, RuntimeError where the method cannot work on these points. The labels are those of the
 command, bit for bit. Other Python threads run on meanwhile.)");
+
+#ifdef PCL_FFT_GROUND_WITH_REGISTRATION
+  defineAlignment(module);
+#endif
 }

@@ -40,6 +40,7 @@ def segment(
     leaf_size: Optional[float] = ...,
     min_object_size: Optional[float] = ...,
     min_cluster_size: int = ...,
+    threads: Optional[int] = ...,
     sensor: Optional[Sequence[float]] = ...,
     cell_size: Optional[float] = ...,
     height_tolerance: Optional[float] = ...,
@@ -65,3 +66,54 @@ def segment(
     step_height: Optional[float] = ...,
     smoothness: Optional[float] = ...,
 ) -> Segmentation: ...
+
+class Alignment:
+    @property
+    def accepted(self) -> bool: ...
+    @property
+    def refusal(self) -> str: ...
+    @property
+    def reference_from_moving(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def covariance(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def origin(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def score(self) -> float: ...
+    @property
+    def overlap(self) -> float: ...
+    @property
+    def method(self) -> str: ...
+
+def align(
+    reference: Union[npt.NDArray[np.float32], npt.NDArray[np.float64]],
+    moving: Union[npt.NDArray[np.float32], npt.NDArray[np.float64]],
+    guess: Optional[npt.ArrayLike] = ...,
+    max_object_size: Optional[float] = ...,
+    *,
+    search: Optional[str] = ...,
+    matching: Optional[str] = ...,
+    fallback: Optional[str] = ...,
+    relief: Optional[str] = ...,
+    max_shift: Optional[float] = ...,
+    max_turn: Optional[float] = ...,
+    min_matches: Optional[int] = ...,
+    min_score: Optional[float] = ...,
+    max_sigma: Optional[float] = ...,
+    min_extent: Optional[float] = ...,
+    min_voxels: Optional[int] = ...,
+    max_segments: Optional[int] = ...,
+    voxel_size: Optional[float] = ...,
+    threads: Optional[int] = ...,
+    cell_size: Optional[float] = ...,
+    height_tolerance: Optional[float] = ...,
+    up_direction: Optional[Sequence[float]] = ...,
+    up_estimation: Optional[str] = ...,
+    yaw: Optional[str] = ...,
+    relative_max_object_size: Optional[float] = ...,
+    filter_order: Optional[int] = ...,
+    passband_ripple: Optional[float] = ...,
+    max_slope: Optional[float] = ...,
+    finest_wavelength: Optional[float] = ...,
+    cell_statistic: Optional[str] = ...,
+) -> Alignment: ...

@@ -77,6 +77,7 @@ const std::vector<std::pair<const char*, Setter>>& setters() {
                                            {"principal-axes", Yaw::PRINCIPAL_AXES},
                                            {"none", Yaw::NONE}})},
       {"height_tolerance", setter(&Filter::setHeightTolerance)},
+      {"threads", setter(&Filter::setNumberOfThreads)},
       {"cell_size", setter(&FFT::setCellSize)},
       {"cell_size", setter(&Grid::setCellSize)},
       {"cell_size", setter(&GraphCut::setCellSize)},
@@ -147,6 +148,7 @@ bool isKnown(const std::string& name) {
 
 std::unique_ptr<Filter> makeFilter(const std::string& method, py::dict& options) {
   std::unique_ptr<Filter> filter = filterFor(method);
+  filter->setNumberOfThreads(0);  // as the command
   py::dict rest;
   for (const auto& [key, value] : options) {
     const auto name = key.cast<std::string>();

@@ -20,4 +20,7 @@ using Filter = GroundSegmentation<pcl::PointXYZ>;
  */
 std::unique_ptr<Filter> makeFilter(const std::string& method, pybind11::dict& options);
 
+/// Adds align() to the module, where it is built with the component registration.
+void defineAlignment(pybind11::module_& module);
+
 }  // namespace pcl_fft_ground::python
