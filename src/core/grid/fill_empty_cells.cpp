@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +31,8 @@ NearestRows nearestRowsInColumns(const Mask& observed) {
 
 /// Holds the product of a squared and a plain distance along the longest grid: 1e8 cells in a line.
 __extension__ using Wide = __int128;
+/// Shorter grids do with 64 bits.
+constexpr Eigen::Index LONGEST_FOR_64_BITS = 1 << 20;
 
 /// A column and the squared distance of its nearest observed cell to the row at hand.
 struct Parabola {
@@ -39,24 +43,46 @@ struct Parabola {
 };
 
 /// True if b is nowhere the lowest of a, b, c (columns ascending), or only where it ties with a lower column.
+template <typename Product>
 bool isHidden(const Parabola& a, const Parabola& b, const Parabola& c) {
   // The lower branch leaves a for b where 2 j (b - a) > (b^2 + h_b) - (a^2 + h_a), and likewise b for c.
   const auto rise = [](const Parabola& p, const Parabola& q) {
-    return Wide(q.column * q.column + q.height - p.column * p.column - p.height);
+    return Product(q.column * q.column + q.height - p.column * p.column - p.height);
   };
   return rise(b, c) * (b.column - a.column) <= rise(a, b) * (c.column - b.column);
 }
 
 /// The parabolas that are the lowest somewhere, by column.
+template <typename Product>
 void lowerEnvelope(const NearestRows& nearest_rows, Eigen::Index row, std::vector<Parabola>& envelope) {
   envelope.clear();
   for (Eigen::Index j = 0; j < nearest_rows.cols(); ++j) {
     if (nearest_rows(row, j) == NONE) continue;
     const std::int64_t distance = nearest_rows(row, j) - row;
     const Parabola next{j, distance * distance};
-    while (envelope.size() >= 2 && isHidden(envelope[envelope.size() - 2], envelope.back(), next))
+    while (envelope.size() >= 2 && isHidden<Product>(envelope[envelope.size() - 2], envelope.back(), next))
       envelope.pop_back();
     envelope.push_back(next);
+  }
+}
+
+/// Calls visit(row, column, parabola of the nearest observed cell) for all cells, row by row. Some are
+/// observed.
+template <typename Visit>
+void forEachNearest(const NearestRows& nearest_rows, const Visit& visit) {
+  const bool is_short = std::max(nearest_rows.rows(), nearest_rows.cols()) <= LONGEST_FOR_64_BITS;
+  std::vector<Parabola> envelope;
+  for (Eigen::Index i = 0; i < nearest_rows.rows(); ++i) {
+    if (is_short)
+      lowerEnvelope<std::int64_t>(nearest_rows, i, envelope);
+    else
+      lowerEnvelope<Wide>(nearest_rows, i, envelope);
+    const Parabola* lowest = envelope.data();
+    const Parabola* const last = lowest + envelope.size() - 1;
+    for (Eigen::Index j = 0; j < nearest_rows.cols(); ++j) {
+      while (lowest < last && lowest[1].at(j) < lowest->at(j)) ++lowest;
+      visit(i, j, *lowest);
+    }
   }
 }
 
@@ -65,17 +91,19 @@ void lowerEnvelope(const NearestRows& nearest_rows, Eigen::Index row, std::vecto
 void fillEmptyCells(Eigen::ArrayXXd& values, const Mask& observed) {
   if (observed.all() || !observed.any()) return;
   const NearestRows nearest_rows = nearestRowsInColumns(observed);
-  std::vector<Parabola> envelope;
-  for (Eigen::Index i = 0; i < values.rows(); ++i) {
-    if (observed.row(i).all()) continue;
-    lowerEnvelope(nearest_rows, i, envelope);
-    std::size_t lowest = 0;
-    for (Eigen::Index j = 0; j < values.cols(); ++j) {
-      while (lowest + 1 < envelope.size() && envelope[lowest + 1].at(j) < envelope[lowest].at(j)) ++lowest;
-      const std::int64_t column = envelope[lowest].column;
-      if (!observed(i, j)) values(i, j) = values(nearest_rows(i, column), column);
-    }
-  }
+  forEachNearest(nearest_rows, [&](Eigen::Index i, Eigen::Index j, const Parabola& nearest) {
+    if (nearest.column != j || nearest.height != 0)
+      values(i, j) = values(nearest_rows(i, nearest.column), nearest.column);
+  });
+}
+
+Eigen::ArrayXXd distancesFrom(const Mask& chosen) {
+  Eigen::ArrayXXd distances = Eigen::ArrayXXd::Zero(chosen.rows(), chosen.cols());
+  if (chosen.all() || !chosen.any()) return distances;
+  forEachNearest(nearestRowsInColumns(chosen), [&](Eigen::Index i, Eigen::Index j, const Parabola& nearest) {
+    distances(i, j) = std::sqrt(static_cast<double>(nearest.at(j)));
+  });
+  return distances;
 }
 
 }  // namespace pcl_fft_ground::core

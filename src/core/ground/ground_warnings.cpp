@@ -125,17 +125,7 @@ GroundSeen groundSeen(const PointsView& points, const Labels& labels, const Grid
 double shareWithoutGround(const Mask& observed, const Mask& ground, const GridGeometry& cells,
                           double distance) {
   if (!ground.any()) return 1;
-  Eigen::ArrayXXd nearest(cells.rows, cells.cols);
-  for (Eigen::Index cell = 0; cell < nearest.size(); ++cell) nearest.data()[cell] = static_cast<double>(cell);
-  fillEmptyCells(nearest, ground);
-  Eigen::Index without = 0;
-  for (Eigen::Index j = 0; j < cells.cols; ++j)
-    for (Eigen::Index i = 0; i < cells.rows; ++i) {
-      const auto cell = static_cast<Eigen::Index>(nearest(i, j));
-      const Eigen::Index row = cell % cells.rows, column = cell / cells.rows;
-      const Eigen::Vector2d steps(static_cast<double>(row - i), static_cast<double>(column - j));
-      if (observed(i, j) && cells.cell_size * steps.norm() > distance) ++without;
-    }
+  const Eigen::Index without = (observed && cells.cell_size * distancesFrom(ground) > distance).count();
   return static_cast<double>(without) / static_cast<double>(std::max<Eigen::Index>(observed.count(), 1));
 }
 

@@ -196,13 +196,19 @@ SortedPoints::SortedPoints(const PointsView& points, const Bounds& bounds, const
 }
 
 CellMap::CellMap(const CellPoints& points, const GridGeometry& cells)
-    : points_(points), cells_(cells), number_(decltype(number_)::Constant(cells.rows, cells.cols, -1)) {
-  for (std::size_t n = 0; n < points.cells.size(); ++n)
-    number_.data()[points.cells[n]] = static_cast<std::int32_t>(n);
+    : points_(points), cells_(cells), before_(static_cast<std::size_t>(cells.rows * cells.cols) + 1) {
+  std::size_t from = 0;
+  for (std::size_t n = 0; n <= points.cells.size(); ++n) {
+    const std::size_t to =
+        n < points.cells.size() ? static_cast<std::size_t>(points.cells[n]) + 1 : before_.size();
+    std::fill(before_.begin() + static_cast<std::ptrdiff_t>(from),
+              before_.begin() + static_cast<std::ptrdiff_t>(to), static_cast<std::uint32_t>(n));
+    from = to;
+  }
 }
 
 double CellMap::density() const {
-  return static_cast<double>(points_.cells.size()) / static_cast<double>(number_.size());
+  return static_cast<double>(points_.cells.size()) / static_cast<double>(size());
 }
 
 Eigen::Index CellMap::reach() const {

@@ -57,27 +57,40 @@ struct CellPoints {
   std::vector<Eigen::Index> cells;         ///< storage index of the cell
 };
 
-/// Finds the point of a cell.
+/// Finds the point of a cell, and the cells of a stretch of a column that have one: however few they are,
+/// none of the others is looked at.
 class CellMap {
  public:
   CellMap(const CellPoints& points, const GridGeometry& cells);
 
   const GridGeometry& cells() const { return cells_; }
-  Eigen::Index size() const { return number_.size(); }
-  bool isObserved(Eigen::Index cell) const { return number_.data()[cell] >= 0; }
+  Eigen::Index size() const { return cells_.rows * cells_.cols; }
+  bool isObserved(Eigen::Index cell) const { return before(cell) < before(cell + 1); }
   /// Level frame [m]; of an observed cell.
-  const Eigen::Vector3d& point(Eigen::Index cell) const {
-    return points_.positions[static_cast<std::size_t>(number_.data()[cell])];
+  const Eigen::Vector3d& point(Eigen::Index cell) const { return pointOf(before(cell)); }
+  /// The point of a number, as visitColumn() tells it.
+  const Eigen::Vector3d& pointOf(std::size_t number) const { return points_.positions[number]; }
+
+  /// Calls visit(number, cell) for the observed cells from `first` to `last`, both in one column; number is
+  /// that of the cell's point.
+  template <typename Visit>
+  void visitColumn(Eigen::Index first, Eigen::Index last, const Visit& visit) const {
+    const std::size_t end = before(last + 1);
+    for (std::size_t n = before(first); n < end; ++n) visit(n, points_.cells[n]);
   }
+
   /// Share of the cells that hold points, (0, 1].
   double density() const;
   /// About as far away is the next observed cell [cells].
   Eigen::Index reach() const;
 
  private:
+  /// Number of the observed cells before one.
+  std::size_t before(Eigen::Index cell) const { return before_[static_cast<std::size_t>(cell)]; }
+
   const CellPoints& points_;
   GridGeometry cells_;
-  Eigen::Array<std::int32_t, Eigen::Dynamic, Eigen::Dynamic> number_;  // of the cell's point, -1 for none
+  std::vector<std::uint32_t> before_;  // of each cell, and behind the last
 };
 
 /** A point for each cell by the statistic. The result does not depend on the order of the points. */

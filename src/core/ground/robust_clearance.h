@@ -18,7 +18,8 @@ namespace pcl_fft_ground::core {
 class Clearance {
  public:
   /// \param ground outlives this; its surface has cells
-  explicit Clearance(const RobustGround& ground);
+  /// \param points those that read() will be asked for: over land without any nothing is made ready
+  Clearance(const RobustGround& ground, const PointsView& points);
 
   /// Of some consecutive points [m].
   struct Block {
@@ -40,6 +41,15 @@ class Clearance {
     float heightAt(float u, float v) const { return a + b * u + (c + d * u) * v; }
   };
 
+  /// The lower corner of a patch and the cell in which places of points lie.
+  struct Place {
+    std::int32_t patch, cell;
+    float u, v;  // shares of the way to the next centre
+  };
+  Place placeOf(float x, float y) const;
+  void makeReady(const RobustGround& ground);
+  void makeReady(const RobustGround& ground, const PointsView& points);
+
   Patch patchAt(const RobustGround& ground, Eigen::Index i, Eigen::Index j) const;
   float allowanceOf(const RobustGround& ground, Eigen::Index cell) const;
 
@@ -48,6 +58,7 @@ class Clearance {
   int rows_, cols_;
   Eigen::Array2d first_;  // lower corner of patch (0, 0)
   double per_metre_;
+  float x_first_, y_first_, x_end_, y_end_, per_metre_in_float_;
   std::vector<Patch> patches_;
   std::vector<float> allowances_;  // of each cell: how far the ground may reach above its surface [m]
 };

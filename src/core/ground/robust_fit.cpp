@@ -21,7 +21,9 @@ Eigen::ArrayXXd penaltyOf(const BandLimit& limit, Eigen::Index rows, Eigen::Inde
   const double epsilon_squared = std::pow(10.0, limit.passband_ripple / 10) - 1;
   const Eigen::ArrayXXd squared_ratio =
       ratios(rows).replicate(1, cols) + ratios(cols).transpose().replicate(rows, 1);
-  return (epsilon_squared * squared_ratio.pow(static_cast<int>(limit.order))).min(STRONGEST_PENALTY);
+  Eigen::ArrayXXd power = squared_ratio;  // many times faster than pow()
+  for (unsigned n = 1; n < limit.order; ++n) power *= squared_ratio;
+  return (epsilon_squared * power).min(STRONGEST_PENALTY);
 }
 
 PenalisedFit::PenalisedFit(Eigen::Index rows, Eigen::Index cols, double cell_size, const BandLimit& limit)
@@ -63,8 +65,9 @@ void PenalisedFit::improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd
     surface_ += (length * step_).cast<double>();
     if (length * step_.abs().maxCoeff() < static_cast<float>(effort.precision)) break;
     residual_ -= length * image_;
-    const float next = (preconditioner_ * residual_ * residual_).sum();
-    direction_ = preconditioner_ * residual_ + next / product * direction_;
+    image_ = preconditioner_ * residual_;
+    const float next = (image_ * residual_).sum();
+    direction_ = image_ + next / product * direction_;
     product = next;
   }
 }

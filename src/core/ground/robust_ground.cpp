@@ -86,16 +86,7 @@ Mask completeGround(RobustSurface& surface, const RobustPlan& plan, const Elevat
 Eigen::ArrayXXd distanceFromGround(const CellPoints& ground, const GridGeometry& cells) {
   Mask observed = Mask::Constant(cells.rows, cells.cols, false);
   for (const Eigen::Index cell : ground.cells) observed.data()[cell] = true;
-  Eigen::ArrayXXd nearest(cells.rows, cells.cols);
-  for (Eigen::Index cell = 0; cell < nearest.size(); ++cell) nearest.data()[cell] = static_cast<double>(cell);
-  fillEmptyCells(nearest, observed);
-  Eigen::ArrayXXd distance(cells.rows, cells.cols);
-  for (Eigen::Index j = 0; j < cells.cols; ++j)
-    for (Eigen::Index i = 0; i < cells.rows; ++i) {
-      const auto cell = static_cast<Eigen::Index>(nearest(i, j));
-      distance(i, j) = Eigen::Vector2d(cell % cells.rows - i, cell / cells.rows - j).norm();
-    }
-  return cells.cell_size * distance;
+  return cells.cell_size * distancesFrom(observed);
 }
 
 void describeSurface(const RobustSurface& surface, const RobustPlan& plan, RobustGround& ground) {
@@ -106,28 +97,9 @@ void describeSurface(const RobustSurface& surface, const RobustPlan& plan, Robus
   ground.surface.uncertainty = (std::pow(ground.scale, 2) + (plan.slope * distance).square()).sqrt();
 }
 
-}  // namespace
-
-RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
-                                  const RobustParameters& parameters) {
-  if (points.cols() == 0) {
-    RobustGround nothing;
-    nothing.surface.frame_from_input = frame_from_input;
-    return nothing;
-  }
-  const RobustPlan plan = planRobustGround(parameters, boundsOf(points), points.cols());
-  RobustGround ground = fitRobustGround(points, frame_from_input, plan, parameters);
-  chooseTolerances(parameters, plan, ground.elevation.observed.count(), ground);
-  widenTolerance(parameters, plannedSample(points, plan), ground);
-  return ground;
-}
-
-Points plannedSample(const PointsView& points, const RobustPlan& plan) {
-  return sampleOfSample(points, plan.points, plan.sample);
-}
-
-RobustGround fitRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
-                             const RobustPlan& plan, const RobustParameters& parameters) {
+/// fitRobustGround() to the planned sample of so many points.
+RobustGround fitSample(const Points& sample, Eigen::Index total, const Eigen::Isometry3d& frame_from_input,
+                       const RobustPlan& plan, const RobustParameters& parameters) {
   constexpr double LEAST_SCALE = 0.0015, PRECISION = 1e-4;  // as shares of the largest object
   RobustGround ground;
   ground.surface.frame_from_input = frame_from_input;
@@ -136,9 +108,8 @@ RobustGround fitRobustGround(const PointsView& points, const Eigen::Isometry3d& 
   ground.max_object_size = plan.max_object_size;
   ground.finest_wavelength = plan.finest_wavelength;
 
-  const Points sample = plannedSample(points, plan);
   ground.bounds = plan.bounds;
-  ground.spacing = spacingOf({sample, points.cols()}, plan.bounds);
+  ground.spacing = spacingOf({sample, total}, plan.bounds);
   const SortedPoints sorted(sample, plan.bounds, plan.cells);
   CellPoints cell_points = representativePoints(sorted, plan.statistic);
   ground.elevation = elevationOf(cell_points, plan.cells);
@@ -163,6 +134,32 @@ RobustGround fitRobustGround(const PointsView& points, const Eigen::Isometry3d& 
     ground.steps = stepsOfGround(land, completed, ground.surface.height);
   }
   return ground;
+}
+
+}  // namespace
+
+RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
+                                  const RobustParameters& parameters) {
+  if (points.cols() == 0) {
+    RobustGround nothing;
+    nothing.surface.frame_from_input = frame_from_input;
+    return nothing;
+  }
+  const RobustPlan plan = planRobustGround(parameters, boundsOf(points), points.cols());
+  const Points sample = plannedSample(points, plan);
+  RobustGround ground = fitSample(sample, points.cols(), frame_from_input, plan, parameters);
+  chooseTolerances(parameters, plan, ground.elevation.observed.count(), ground);
+  widenTolerance(parameters, sample, ground);
+  return ground;
+}
+
+Points plannedSample(const PointsView& points, const RobustPlan& plan) {
+  return sampleOfSample(points, plan.points, plan.sample);
+}
+
+RobustGround fitRobustGround(const PointsView& points, const Eigen::Isometry3d& frame_from_input,
+                             const RobustPlan& plan, const RobustParameters& parameters) {
+  return fitSample(plannedSample(points, plan), points.cols(), frame_from_input, plan, parameters);
 }
 
 }  // namespace pcl_fft_ground::core

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -29,13 +31,15 @@ constexpr double LEAST_ACCEPTED =
 using Quadric = Eigen::Matrix<double, 6, 1>;
 using Normal = Eigen::Matrix<double, 6, 6>;
 
-/// Offsets of the cells around one.
-std::vector<std::pair<Eigen::Index, Eigen::Index>> discOf(double radius) {
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> disc;
+/// For the columns of a disc about a cell, from the first one on, how far it reaches along them [cells].
+std::vector<Eigen::Index> discOf(double radius) {
+  std::vector<Eigen::Index> disc;
   const auto reach = static_cast<Eigen::Index>(radius);
-  for (Eigen::Index j = -reach; j <= reach; ++j)
-    for (Eigen::Index i = -reach; i <= reach; ++i)
-      if (static_cast<double>(i * i + j * j) <= radius * radius) disc.emplace_back(i, j);
+  for (Eigen::Index j = -reach; j <= reach; ++j) {
+    Eigen::Index i = 0;
+    while (static_cast<double>((i + 1) * (i + 1) + j * j) <= radius * radius) ++i;
+    disc.push_back(i);
+  }
   return disc;
 }
 
@@ -80,18 +84,18 @@ class Land {
         step_height_(STEP_SPREADS * spread),
         disc_(discOf(DISC_REACH / std::sqrt(map.density()))) {}
 
+  /// visit(number, cell) of the observed cells in the disc about one, or in the square beside it.
   template <typename Visit>
   void around(Eigen::Index cell, const Visit& visit) const {
-    visitOffsets(cell, disc_, visit);
+    const auto reach = static_cast<Eigen::Index>(disc_.size() / 2);
+    visitColumns(
+        cell, reach, [&](Eigen::Index j) { return disc_[static_cast<std::size_t>(j + reach)]; }, visit);
   }
 
   template <typename Visit>
   void beside(Eigen::Index cell, const Visit& visit) const {
-    const Eigen::Index row = cell % rows_, col = cell / rows_, reach = map_.reach();
-    for (Eigen::Index j = std::max<Eigen::Index>(col - reach, 0); j <= std::min(col + reach, cols_ - 1); ++j)
-      for (Eigen::Index i = std::max<Eigen::Index>(row - reach, 0); i <= std::min(row + reach, rows_ - 1);
-           ++i)
-        if (map_.isObserved(i + j * rows_)) visit(i + j * rows_);
+    visitColumns(
+        cell, map_.reach(), [&](Eigen::Index) { return map_.reach(); }, visit);
   }
 
   bool isAcrossAStep(const Eigen::Vector3d& offset, double steepest = STEEPEST) const {
@@ -103,10 +107,10 @@ class Land {
     Moments moments;
     const double per_cell = 1 / map_.cells().cell_size;
     const Eigen::Vector3d& centre = map_.point(cell);
-    around(cell, [&](Eigen::Index other) {
+    around(cell, [&](std::size_t number, Eigen::Index other) {
       ++result.observed;
       if (!ground.data()[other]) return;
-      const Eigen::Vector3d offset = map_.point(other) - centre;
+      const Eigen::Vector3d offset = map_.pointOf(number) - centre;
       if (isAcrossAStep(offset, steepest)) return;
       ++result.ground;
       const double u = offset.x() * per_cell, v = offset.y() * per_cell, z = offset.z();
@@ -124,24 +128,40 @@ class Land {
     return result;
   }
 
+  /// True if all of the observed cells around one are ground, and so many of them.
+  bool isAmidGround(Eigen::Index cell, const Mask& ground, double fewest) const {
+    double count = 0;
+    bool all = true;
+    around(cell, [&](std::size_t, Eigen::Index other) {
+      ++count;
+      all = all && ground.data()[other];
+    });
+    return all && count >= fewest;
+  }
+
   const CellMap& map() const { return map_; }
-  std::size_t discSize() const { return disc_.size(); }
+  Eigen::Index discSize() const {
+    return std::accumulate(disc_.begin(), disc_.end(), Eigen::Index{0},
+                           [](Eigen::Index sum, Eigen::Index reach) { return sum + 2 * reach + 1; });
+  }
 
  private:
-  template <typename Offsets, typename Visit>
-  void visitOffsets(Eigen::Index cell, const Offsets& offsets, const Visit& visit) const {
+  /// Column by column, at most `reach` columns and along each reachAlong(offset) cells away.
+  template <typename ReachAlong, typename Visit>
+  void visitColumns(Eigen::Index cell, Eigen::Index reach, const ReachAlong& reachAlong,
+                    const Visit& visit) const {
     const Eigen::Index row = cell % rows_, col = cell / rows_;
-    for (const auto& [i, j] : offsets) {
-      if (row + i < 0 || row + i >= rows_ || col + j < 0 || col + j >= cols_) continue;
-      const Eigen::Index other = row + i + (col + j) * rows_;
-      if (map_.isObserved(other)) visit(other);
+    for (Eigen::Index j = std::max(-reach, -col); j <= std::min(reach, cols_ - 1 - col); ++j) {
+      const Eigen::Index along = reachAlong(j), first = (col + j) * rows_;
+      map_.visitColumn(first + std::max<Eigen::Index>(row - along, 0),
+                       first + std::min(row + along, rows_ - 1), visit);
     }
   }
 
   const CellMap& map_;
   Eigen::Index rows_, cols_;
   double step_height_;
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> disc_;
+  std::vector<Eigen::Index> disc_;
 };
 
 double quantile(std::vector<double>& values, double share) {
@@ -165,6 +185,7 @@ std::optional<Shape> shapeOf(const Land& land, const Mask& ground, double spread
   std::vector<double> misfits, curvatures;
   const std::size_t one_in = std::max<std::size_t>(candidates.size() / (4 * LOOKED_AT), 1);
   for (std::size_t n = 0; n < candidates.size() && misfits.size() < LOOKED_AT; n += one_in) {
+    if (!land.isAmidGround(candidates[n], ground, fewest)) continue;
     const Surroundings all = land.surroundingsOf(candidates[n], ground);
     if (all.ground < all.observed || all.ground < fewest) continue;
     const Eigen::LDLT<Normal> solver(all.products + 1e-12 * all.products.trace() * Normal::Identity());
@@ -248,12 +269,12 @@ Mask continuedGround(const CellMap& map, const Mask& ground, double spread, doub
     if (ground.data()[n]) fresh.push_back(n);
   for (int round = 0; !fresh.empty(); ++round) {
     open.clear();
-    const auto ask = [&](Eigen::Index cell) {
+    const auto ask = [&](std::size_t number, Eigen::Index cell) {
       if (all.data()[cell] || asked.data()[cell]) return;
       bool reachable = false;
-      land.beside(cell, [&](Eigen::Index other) {
-        reachable =
-            reachable || (all.data()[other] && !land.isAcrossAStep(map.point(other) - map.point(cell)));
+      land.beside(cell, [&](std::size_t beside, Eigen::Index other) {
+        reachable = reachable ||
+                    (all.data()[other] && !land.isAcrossAStep(map.pointOf(beside) - map.pointOf(number)));
       });
       if (!reachable) return;
       asked.data()[cell] = true;
