@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pcl_fft_ground/core/grid/elevation_grid.h"
+#include "grid/distances.h"
 
 namespace pcl_fft_ground::core {
 namespace {

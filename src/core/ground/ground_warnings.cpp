@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "grid/distances.h"
 #include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {

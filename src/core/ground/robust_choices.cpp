@@ -62,7 +62,7 @@ struct ClearanceCounts {
 
 ClearanceCounts clearancesOf(const PointsView& points, const RobustGround& ground) {
   ClearanceCounts counts;
-  const Clearance clearance(ground);
+  const Clearance clearance(ground, points);
   const auto per_metre = static_cast<float>(ClearanceCounts::STEPS / ground.most_tolerance);
   const auto deepest = static_cast<float>(ground.depth_tolerance);
   const auto count = [&](float distance, std::array<std::size_t, ClearanceCounts::STEPS>& steps) {

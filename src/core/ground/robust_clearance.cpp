@@ -2,20 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {
+namespace {
+
+constexpr Eigen::Index COLUMNS_AT_A_TIME = 64;
+
+}  // namespace
+
+Clearance::Patches::Patches(const GroundSurface& surface)
+    : rows(static_cast<std::int32_t>(surface.height.rows()) + 1),
+      cols(static_cast<std::int32_t>(surface.height.cols()) + 1),
+      per_metre(static_cast<float>(1 / surface.geometry.cell_size)),
+      x_first(static_cast<float>(surface.geometry.origin.x() - 0.5 * surface.geometry.cell_size)),
+      y_first(static_cast<float>(surface.geometry.origin.y() - 0.5 * surface.geometry.cell_size)),
+      x_end(std::nextafter(static_cast<float>(rows), 0.0F)),
+      y_end(std::nextafter(static_cast<float>(cols), 0.0F)) {}
+
+Clearance::Place Clearance::Patches::placeOf(float x, float y) const {
+  const float from_x = std::min(std::max((x - x_first) * per_metre, 0.0F), x_end);
+  const float from_y = std::min(std::max((y - y_first) * per_metre, 0.0F), y_end);
+  const auto i = static_cast<std::int32_t>(from_x), j = static_cast<std::int32_t>(from_y);
+  const float u = from_x - static_cast<float>(i), v = from_y - static_cast<float>(j);
+  // The nearest of the four centres is that of the point's own cell.
+  const std::int32_t row = i - (u < 0.5F ? 1 : 0), col = j - (v < 0.5F ? 1 : 0);
+  return {i + j * rows, std::clamp(row, 0, rows - 2) + std::clamp(col, 0, cols - 2) * (rows - 1), u, v};
+}
 
 Clearance::Clearance(const RobustGround& ground, const PointsView& points)
-    : rows_(static_cast<int>(ground.surface.height.rows()) + 1),
-      cols_(static_cast<int>(ground.surface.height.cols()) + 1),
-      first_(ground.surface.geometry.origin.array() - 0.5 * ground.surface.geometry.cell_size),
+    : grid_(ground.surface),
       per_metre_(1 / ground.surface.geometry.cell_size),
-      x_first_(static_cast<float>(first_.x())),
-      y_first_(static_cast<float>(first_.y())),
-      x_end_(std::nextafter(static_cast<float>(rows_), 0.0F)),
-      y_end_(std::nextafter(static_cast<float>(cols_), 0.0F)),
-      per_metre_in_float_(static_cast<float>(per_metre_)),
-      patches_(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_)),
+      patches_(static_cast<std::size_t>(grid_.rows) * static_cast<std::size_t>(grid_.cols)),
       allowances_(static_cast<std::size_t>(ground.surface.height.size())) {
   if (points.cols() < ground.surface.height.size())
     makeReady(ground, points);
@@ -24,9 +44,9 @@ Clearance::Clearance(const RobustGround& ground, const PointsView& points)
 }
 
 void Clearance::makeReady(const RobustGround& ground) {
-  forEachRange(cols_, COLUMNS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
+  forEachRange(grid_.cols, COLUMNS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
     for (Eigen::Index j = begin; j < end; ++j)
-      for (Eigen::Index i = 0; i < rows_; ++i) patches_[patchNumber(i, j)] = patchAt(ground, i, j);
+      for (Eigen::Index i = 0; i < grid_.rows; ++i) patches_[grid_.number(i, j)] = patchAt(ground, i, j);
   });
   const Eigen::Index rows = ground.surface.height.rows();
   forEachRange(ground.surface.height.cols(), COLUMNS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
@@ -40,13 +60,13 @@ void Clearance::makeReady(const RobustGround& ground, const PointsView& points) 
   enum : char { NOT_ASKED, ASKED, READY };
   std::vector<char> patches(patches_.size(), NOT_ASKED), cells(allowances_.size(), NOT_ASKED);
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
-    const Place place = placeOf(points(0, n), points(1, n));
+    const Place place = grid_.placeOf(points(0, n), points(1, n));
     patches[static_cast<std::size_t>(place.patch)] = cells[static_cast<std::size_t>(place.cell)] = ASKED;
   }
   const auto ready = [&](std::size_t patch) {
     if (std::exchange(patches[patch], READY) == READY) return;
     const auto number = static_cast<Eigen::Index>(patch);
-    patches_[patch] = patchAt(ground, number % rows_, number / rows_);
+    patches_[patch] = patchAt(ground, number % grid_.rows, number / grid_.rows);
   };
   for (std::size_t patch = 0; patch < patches.size(); ++patch)
     if (patches[patch] == ASKED) ready(patch);
@@ -54,13 +74,9 @@ void Clearance::makeReady(const RobustGround& ground, const PointsView& points) 
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     if (cells[cell] != ASKED) continue;
     const auto number = static_cast<Eigen::Index>(cell);
-    ready(patchNumber(number % rows + 1, number / rows + 1));  // that the allowance looks at
+    ready(grid_.number(number % rows + 1, number / rows + 1));  // that the allowance looks at
     allowances_[cell] = allowanceOf(ground, number);
   }
-}
-
-std::size_t Clearance::patchNumber(Eigen::Index i, Eigen::Index j) const {
-  return static_cast<std::size_t>(i + j * rows_);
 }
 
 Clearance::Patch Clearance::patchAt(const RobustGround& ground, Eigen::Index i, Eigen::Index j) const {
@@ -80,21 +96,11 @@ Clearance::Patch Clearance::patchAt(const RobustGround& ground, Eigen::Index i, 
 
 float Clearance::allowanceOf(const RobustGround& ground, Eigen::Index cell) const {
   const Eigen::Index rows = ground.surface.height.rows();
-  const Patch& patch = patches_[patchNumber(cell % rows + 1, cell / rows + 1)];
+  const Patch& patch = patches_[grid_.number(cell % rows + 1, cell / rows + 1)];
   const auto most = static_cast<float>(ground.most_tolerance - ground.tolerance);
   const bool seen = ground.elevation.observed.data()[cell];
   const float bend = std::max(0.0F, (ground.lowest.data()[cell] - patch.lean) * patch.shortening);
   return std::max(seen ? std::min(bend, most) : most, ground.steps.data()[cell]);
-}
-
-Clearance::Place Clearance::placeOf(float x, float y) const {
-  const float from_x = std::min(std::max((x - x_first_) * per_metre_in_float_, 0.0F), x_end_);
-  const float from_y = std::min(std::max((y - y_first_) * per_metre_in_float_, 0.0F), y_end_);
-  const auto i = static_cast<std::int32_t>(from_x), j = static_cast<std::int32_t>(from_y);
-  const float u = from_x - static_cast<float>(i), v = from_y - static_cast<float>(j);
-  // The nearest of the four centres is that of the point's own cell.
-  const std::int32_t row = i - (u < 0.5F ? 1 : 0), col = j - (v < 0.5F ? 1 : 0);
-  return {i + j * rows_, std::clamp(row, 0, rows_ - 2) + std::clamp(col, 0, cols_ - 2) * (rows_ - 1), u, v};
 }
 
 void Clearance::read(const PointsView& points, std::size_t begin, Block& block) const {
@@ -103,9 +109,9 @@ void Clearance::read(const PointsView& points, std::size_t begin, Block& block) 
   block.count = at.count;
   std::array<std::int32_t, PointBlock::SIZE> patches, cells;
   std::array<float, PointBlock::SIZE> u, v;
-  const Clearance own = geometry();  // not to be read again and again
+  const Patches grid = grid_;
   for (std::size_t n = 0; n < at.count; ++n) {
-    const Place place = placeOf(at.x[n], at.y[n]);
+    const Place place = grid.placeOf(at.x[n], at.y[n]);
     patches[n] = place.patch, cells[n] = place.cell, u[n] = place.u, v[n] = place.v;
   }
   for (std::size_t n = 0; n < at.count; ++n) {

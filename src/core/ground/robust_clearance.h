@@ -41,24 +41,34 @@ class Clearance {
     float heightAt(float u, float v) const { return a + b * u + (c + d * u) * v; }
   };
 
-  /// The lower corner of a patch and the cell in which places of points lie.
+  /// The patch and the cell in which a place lies.
   struct Place {
     std::int32_t patch, cell;
-    float u, v;  // shares of the way to the next centre
+    float u, v;  // shares of the way from the patch's lower corner to the next centres
   };
-  Place placeOf(float x, float y) const;
+
+  /// One patch more along each axis than there are pairs of cells: beyond the outermost centres the border
+  /// continues.
+  struct Patches {
+    explicit Patches(const GroundSurface& surface);
+    Place placeOf(float x, float y) const;
+    std::size_t number(Eigen::Index i, Eigen::Index j) const {
+      return static_cast<std::size_t>(i + j * rows);
+    }
+
+    std::int32_t rows, cols;
+    float per_metre, x_first, y_first;  // lower corner of patch (0, 0)
+    float x_end, y_end;                 // of the patches, just not reached
+  };
+
   void makeReady(const RobustGround& ground);
   void makeReady(const RobustGround& ground, const PointsView& points);
 
   Patch patchAt(const RobustGround& ground, Eigen::Index i, Eigen::Index j) const;
   float allowanceOf(const RobustGround& ground, Eigen::Index cell) const;
 
-  // One patch more along each axis than there are pairs of cells: beyond the outermost centres the border
-  // continues.
-  int rows_, cols_;
-  Eigen::Array2d first_;  // lower corner of patch (0, 0)
+  Patches grid_;
   double per_metre_;
-  float x_first_, y_first_, x_end_, y_end_, per_metre_in_float_;
   std::vector<Patch> patches_;
   std::vector<float> allowances_;  // of each cell: how far the ground may reach above its surface [m]
 };

@@ -63,6 +63,7 @@ void PenalisedFit::improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd
     const float length = product / (direction_ * image_).sum();
     coefficients_ += (length * direction_).cast<double>();
     surface_ += (length * step_).cast<double>();
+    if (n + 1 == effort.steps) break;  // what follows prepares the next step
     if (length * step_.abs().maxCoeff() < static_cast<float>(effort.precision)) break;
     residual_ -= length * image_;
     image_ = preconditioner_ * residual_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "grid/distances.h"
 #include "ground/robust_breaks.h"
 #include "ground/robust_choices.h"
 #include "ground/robust_growth.h"

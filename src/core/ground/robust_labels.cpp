@@ -7,7 +7,7 @@ namespace pcl_fft_ground::core {
 RobustLabels labelRobust(const PointsView& points, const RobustGround& ground) {
   RobustLabels result{Labels(static_cast<std::size_t>(points.cols()), Label::GROUND), 0};
   if (ground.surface.height.size() == 0) return result;
-  const Clearance clearance(ground);
+  const Clearance clearance(ground, points);
   const auto highest = static_cast<float>(ground.tolerance);
   const auto deepest = static_cast<float>(ground.depth_tolerance);
   const auto labelPart = [&](const PointsView& part, Label* labels) {

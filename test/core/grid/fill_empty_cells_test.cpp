@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 #include <tuple>
 #include <utility>
 
-#include "pcl_fft_ground/core/grid/elevation_grid.h"
+#include "grid/distances.h"
 #include "random_points.h"
 
 namespace pcl_fft_ground::core {
@@ -27,6 +28,7 @@ double slowNearest(const Mask& observed, Eigen::Index i, Eigen::Index j) {
 
 /// The filled grid against brute force: the distance of each source first, then the source itself.
 void expectNearest(const Mask& observed) {
+  const Eigen::ArrayXXd distances = distancesFrom(observed);
   Eigen::ArrayXXd filled = numberedCells(observed.rows(), observed.cols());
   fillEmptyCells(filled, observed);
   for (Eigen::Index j = 0; j < observed.cols(); ++j)
@@ -38,6 +40,7 @@ void expectNearest(const Mask& observed) {
       };
       const double nearest = slowNearest(observed, i, j);
       ASSERT_EQ(squaredDistance(filled(i, j)), squaredDistance(nearest)) << "cell " << i << ", " << j;
+      ASSERT_EQ(distances(i, j), std::sqrt(static_cast<double>(squaredDistance(nearest))));
       ASSERT_EQ(filled(i, j), nearest) << "tie at cell " << i << ", " << j;
     }
 }

@@ -58,9 +58,6 @@ PCL_FFT_GROUND_CORE_EXPORT ElevationGrid rasteriseHighest(const PointsView& poin
  */
 PCL_FFT_GROUND_CORE_EXPORT void fillEmptyCells(Eigen::ArrayXXd& values, const Mask& observed);
 
-/// The distance of every cell from the nearest chosen one, between their centres [cells]; 0 where none is.
-PCL_FFT_GROUND_CORE_EXPORT Eigen::ArrayXXd distancesFrom(const Mask& chosen);
-
 /// The first `rows` x `cols` cells of a grid, which has no fewer; a grid that is moved in is not copied.
 PCL_FFT_GROUND_CORE_EXPORT ElevationGrid lowerCorner(ElevationGrid grid, Eigen::Index rows,
                                                      Eigen::Index cols);
