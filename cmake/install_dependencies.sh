@@ -40,6 +40,20 @@ packages_of() {
   esac
 }
 
+# optional_packages_of PURPOSE: installed where the system has them; Debian 12 has no LASzip.
+optional_packages_of() {
+  case "$1" in
+    tool) echo "liblaszip-dev" ;;
+  esac
+}
+
+# missing_optional PACKAGE...: those that are not installed, as far as apt knows them.
+missing_optional() {
+  for package in $(missing_packages "$@"); do
+    ! apt-cache show "$package" >/dev/null 2>&1 || echo "$package"
+  done
+}
+
 # missing_commands COMMAND:PACKAGE...: the packages of the commands that are not on the PATH.
 missing_commands() {
   for pair in "$@"; do
@@ -68,6 +82,7 @@ install_dependencies.sh: this system is neither Debian nor Ubuntu, so nothing wa
   for SegmentICP)
   Eigen >= 3.4, Boost >= 1.71 (headers; program_options for the command), FLANN
   Cairo, nlohmann-json >= 3.9 and a sans-serif font for the command; GoogleTest >= 1.10 for the tests
+  optional: GDAL for GeoTIFF, LASzip for LAZ
   pybind11, NumPy and Python's headers for the Python module; matplotlib for its example
 and run the same command again with PCL_FFT_GROUND_SKIP_INSTALL=1 in the environment.
 TEXT
@@ -88,22 +103,25 @@ install_packages() {
   [ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null 2>&1 ||
     fail "root is needed to install them, and there is no sudo; as root, run: apt-get install --no-install-recommends $*"
   as_root env DEBIAN_FRONTEND=noninteractive apt-get update -q
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "$@" ||
+  # shellcheck disable=SC2046,SC2086  # lists of words; apt may know more now
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "$@" $(missing_optional $optional) ||
     fail "apt-get could not install: $*"
 }
 
 [ $# -gt 0 ] || fail "say what for: $purposes"
 commands=""
 packages=""
+optional=""
 for purpose in "$@"; do
   commands="$commands $(commands_of "$purpose")"
   packages="$packages $(packages_of "$purpose")"
+  optional="$optional $(optional_packages_of "$purpose")"
 done
 [ "${PCL_FFT_GROUND_SKIP_INSTALL:-0}" != 1 ] || exit 0
 is_debian_family || explain_other_system
 
 # shellcheck disable=SC2086  # lists of words
-missing="$(missing_commands $commands) $(missing_packages $packages)"
+missing="$(missing_commands $commands) $(missing_packages $packages) $(missing_optional $optional)"
 # shellcheck disable=SC2086
 set -- $missing
 [ $# -eq 0 ] || install_packages "$@"

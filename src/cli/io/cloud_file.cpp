@@ -357,6 +357,7 @@ Cloud interpretCoordinates(RawCloud raw, const Coordinates& xyz, const Eigen::Ve
   cloud.pose_fault = raw.pose_fault;
   cloud.remarks = raw.remarks;
   cloud.crs = raw.crs;
+  cloud.is_compressed = raw.is_compressed;
   cloud.points = toPoints(xyz, cloud.origin, raw.table, cloud.viewpoint);
   cloud.fields = withFloatCoordinates(raw.table, *cloud.points);
   withhold(raw.withheld, *cloud.points);
@@ -413,7 +414,7 @@ void writeReclassified(const std::string& path, const std::string& input, const 
 
 bool hasCloudName(const std::string& path) {
   const std::string extension = lowerExtension(path);
-  return extension == ".pcd" || extension == ".ply" || extension == ".las";
+  return extension == ".pcd" || extension == ".ply" || extension == ".las" || extension == ".laz";
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -34,6 +34,7 @@ struct Cloud {
   std::vector<std::string> remarks;       ///< what a user should know of how the file was read, a line each
   std::string crs;                        ///< of the file's x and y, as WKT or "EPSG:n"; empty if not known
   CloudFormat format = CloudFormat::PCD;  ///< of the file
+  bool is_compressed = false;             ///< whether the file is LAZ
 };
 
 /// How to read a cloud.
@@ -71,8 +72,8 @@ std::string pcdHeader(const pcl::PCLPointCloud2& cloud, const Viewpoint& viewpoi
 /// \throws WorkError naming the file
 void writeReclassified(const std::string& path, const std::string& input, const std::vector<int>& classes);
 
-/// Whether a file's name ends as that of a cloud which a folder may hold among other files: .pcd, .ply or
-/// .las, in any case.
+/// Whether a file's name ends as that of a cloud which a folder may hold among other files: .pcd, .ply,
+/// .las or .laz, in any case.
 bool hasCloudName(const std::string& path);
 
 }  // namespace pcl_fft_ground::cli

@@ -47,6 +47,7 @@ struct RawCloud {
   std::vector<std::string> remarks;  ///< what a user should know of how the file was read
   std::string crs;                   ///< of x and y, as WKT or "EPSG:n"; empty if it is not known
   LabelScheme label_scheme = LabelScheme::OURS;
+  bool is_compressed = false;  ///< whether the file is LAZ
   std::vector<bool> withheld;  ///< per point: whether the file asks that it is not used; empty if for none
 };
 
@@ -140,7 +141,8 @@ RawCloud decodeText(std::string_view content);
  */
 RawCloud decodeFloats(std::string_view content, std::optional<CloudFormat> format);
 
-/** Decodes a LAS file of the versions 1.0 to 1.4, point formats 0 to 10. Coordinates come as FLOAT64; further
+/** Decodes a LAS file of the versions 1.0 to 1.4, point formats 0 to 10; a LAZ file, too, where the program is
+ * built with LASzip. Coordinates come as FLOAT64; further
  * fields are intensity, return_number, number_of_returns, classification, user_data, scan_angle [degrees],
  * point_source_id and, by format, gps_time, red, green, blue and nir.
  */
@@ -153,7 +155,8 @@ struct LasClasses {
   int below = 7;  ///< of objects below the ground
 };
 
-/** A LAS file with other classes: the same bytes but for the classification of each point.
+/** A LAS file with other classes: the same bytes but for the classification of each point. A LAZ file is
+ * compressed anew, and the same bytes when it is unpacked.
  *
  * \param classes  per point, in order: the class, or -1 to leave it as it is
  * \throws WorkError for a file that decodeLas() refuses, or with another number of points, or where its point

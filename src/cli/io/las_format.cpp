@@ -6,6 +6,7 @@
 #include "errors.h"
 #include "io/cloud_fields.h"
 #include "io/formats.h"
+#include "io/las_header.h"
 
 // Offsets and names are those of the ASPRS LAS specification 1.4 R15.
 namespace pcl_fft_ground::cli {
@@ -16,33 +17,6 @@ using Field = pcl::PCLPointField;
 constexpr std::size_t shortest_header = 227;  // of the versions 1.0 to 1.2
 constexpr std::size_t header_1_4 = 375;
 constexpr std::array<std::size_t, 11> record_bytes_of_format{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::uint8_t first_new_format = 6;  // from it on a record has room for 256 classes
-
-/// A number at a place of a file, least byte first; the caller has checked that it is there.
-template <typename Number>
-Number numberAt(std::string_view content, std::size_t place) {
-  Number number{};
-  std::memcpy(&number, content.data() + place, sizeof number);
-  return number;
-}
-
-/// What is needed of a LAS file's header, checked against the size of the file.
-struct LasHeader {
-  std::uint8_t format = 0;
-  std::size_t record_bytes = 0;
-  std::size_t points_begin = 0;
-  std::size_t points = 0;
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  std::string remark;  ///< on a count that is below what the file has; empty if there is none
-
-  bool isNewFormat() const { return format >= first_new_format; }
-  std::size_t classPlace() const { return isNewFormat() ? 16 : 15; }
-  bool isWithheld(std::string_view record) const {
-    const auto flags = static_cast<std::uint8_t>(record[15]);
-    return (flags & (isNewFormat() ? 0x04U : 0x80U)) != 0;
-  }
-};
 
 std::uint64_t countInHeader(std::string_view content, unsigned minor) {
   const auto legacy = numberAt<std::uint32_t>(content, 107);
@@ -65,12 +39,10 @@ void readTransform(std::string_view content, LasHeader& header) {
 }
 
 void readRecordFormat(std::string_view content, LasHeader& header) {
-  const auto format = static_cast<std::uint8_t>(content[104]);
-  if ((format & 0xC0U) != 0)
-    throw WorkError(
-        "it is compressed (LAZ), and this program is built without LASzip: convert it by 'laszip -i IN.laz "
-        "-o "
-        "OUT.las', 'las2las' or 'pdal translate IN.laz OUT.las'");
+  constexpr unsigned compression_bits = 0xC0;
+  const auto stored = static_cast<std::uint8_t>(content[104]);
+  header.is_compressed = (stored & compression_bits) != 0;
+  const auto format = static_cast<std::uint8_t>(stored & ~compression_bits);
   if (format >= record_bytes_of_format.size())
     throw WorkError("the LAS header's point format " + std::to_string(format) + " is not from 0 to 10");
   header.format = format;
@@ -99,12 +71,13 @@ void readExtent(std::string_view content, std::uint64_t file_size, unsigned mino
                     " of " + std::to_string(file_size));
   const std::size_t room = file_size - std::min<std::uint64_t>(file_size, header.points_begin);
   const std::size_t most = room / header.record_bytes;
-  if (count > most)
+  if (!header.is_compressed && count > most)
     throw WorkError("it is truncated: its header counts " + std::to_string(count) + " points of " +
                     std::to_string(header.record_bytes) + " bytes, and " + std::to_string(room) +
                     " bytes are there");
   if (count > static_cast<std::uint64_t>(max_point_count)) throw WorkError("it holds too many points");
   header.points = static_cast<std::size_t>(count);
+  if (header.is_compressed) return;
   if (most > header.points && !hasMoreBehindPoints(content, minor))
     header.remark = "its header counts " + std::to_string(count) + " points, but the file has room for " +
                     std::to_string(most) + ": those beyond the count are not read";
@@ -113,7 +86,9 @@ void readExtent(std::string_view content, std::uint64_t file_size, unsigned mino
                     " bytes follow");
 }
 
-LasHeader parseHeader(std::string_view content, std::uint64_t file_size) {
+}  // namespace
+
+LasHeader parseLasHeader(std::string_view content, std::uint64_t file_size) {
   if (!looksLikeLas(content)) throw WorkError("it is no LAS file: it does not begin with 'LASF'");
   const std::size_t header_bytes =
       content.size() < shortest_header ? shortest_header : numberAt<std::uint16_t>(content, 94);
@@ -126,11 +101,34 @@ LasHeader parseHeader(std::string_view content, std::uint64_t file_size) {
     throw WorkError("its LAS version " + std::to_string(major) + "." + std::to_string(minor) +
                     " is not from 1.0 to 1.4");
   LasHeader header;
+  header.header_bytes = header_bytes;
+  header.minor = minor;
   readRecordFormat(content, header);
   readTransform(content, header);
   readExtent(content, file_size, minor, header);
   return header;
 }
+
+std::vector<VariableRecord> variableRecords(std::string_view content, std::size_t begin, std::uint64_t count,
+                                            RecordKind kind) {
+  const bool is_extended = kind == RecordKind::EXTENDED;
+  const std::size_t header_bytes = is_extended ? 60 : 54;
+  std::vector<VariableRecord> records;
+  std::string_view rest = content.substr(std::min(begin, content.size()));
+  while (records.size() < count && rest.size() >= header_bytes) {
+    const std::uint64_t length =
+        is_extended ? numberAt<std::uint64_t>(rest, 20) : numberAt<std::uint16_t>(rest, 20);
+    if (length > rest.size() - header_bytes) break;
+    const std::string_view whole = rest.substr(0, header_bytes + static_cast<std::size_t>(length));
+    const std::string_view user = whole.substr(2, 16);
+    records.push_back({user.substr(0, user.find('\0')), numberAt<std::uint16_t>(whole, 18),
+                       whole.substr(header_bytes), whole});
+    rest.remove_prefix(whole.size());
+  }
+  return records;
+}
+
+namespace {
 
 /// The fields that stand in a record as they are.
 std::vector<Field> plainFields(const LasHeader& header) {
@@ -211,26 +209,19 @@ pcl::PCLPointCloud2 joined(const pcl::PCLPointCloud2& left, const pcl::PCLPointC
 
 /// The coordinate reference system that the records in front of the points name: WKT, or else the EPSG code
 /// among the GeoTIFF keys. Records that lie end the search.
-std::string crsOf(std::string_view content, std::size_t points_begin) {
-  constexpr std::size_t record_header = 54;
+std::string crsOf(std::string_view content, const LasHeader& header) {
   constexpr std::uint16_t wkt = 2112, geotiff_keys = 34735, geographic_key = 2048, projected_key = 3072;
   constexpr std::uint16_t first_code = 1024, user_defined = 32767;
-  std::string_view rest = content.substr(0, std::min(points_begin, content.size()));
-  rest.remove_prefix(std::min<std::size_t>(numberAt<std::uint16_t>(content, 94), rest.size()));
   std::string by_key;
-  for (auto records = numberAt<std::uint32_t>(content, 100); records > 0 && rest.size() >= record_header;
-       --records) {
-    const bool is_projection = rest.substr(2, 15) == "LASF_Projection";
-    const auto kind = numberAt<std::uint16_t>(rest, 18);
-    const std::size_t length = numberAt<std::uint16_t>(rest, 20);
-    if (length > rest.size() - record_header) break;
-    const std::string_view data = rest.substr(record_header, length);
-    rest.remove_prefix(record_header + length);
-    if (!is_projection) continue;
-    if (kind == wkt) return std::string(data.substr(0, data.find('\0')));
-    for (std::size_t key = 8; kind == geotiff_keys && key + 8 <= data.size(); key += 8) {
-      const auto id = numberAt<std::uint16_t>(data, key), place = numberAt<std::uint16_t>(data, key + 2),
-                 code = numberAt<std::uint16_t>(data, key + 6);
+  for (const VariableRecord& record :
+       variableRecords(content.substr(0, header.points_begin), header.header_bytes,
+                       numberAt<std::uint32_t>(content, 100), RecordKind::PLAIN)) {
+    if (record.user != "LASF_Projection") continue;
+    if (record.id == wkt) return std::string(record.data.substr(0, record.data.find('\0')));
+    for (std::size_t key = 8; record.id == geotiff_keys && key + 8 <= record.data.size(); key += 8) {
+      const auto id = numberAt<std::uint16_t>(record.data, key),
+                 place = numberAt<std::uint16_t>(record.data, key + 2),
+                 code = numberAt<std::uint16_t>(record.data, key + 6);
       const bool is_code = place == 0 && code >= first_code && code < user_defined;
       if (is_code && (id == projected_key || (id == geographic_key && by_key.empty())))
         by_key = "EPSG:" + std::to_string(code);
@@ -270,14 +261,22 @@ bool looksLikeLas(std::string_view content) {
 }
 
 RawCloud decodeLas(std::string_view content) {
-  const LasHeader header = parseHeader(content, content.size());
+  const LasHeader header = parseLasHeader(content, content.size());
+  if (header.is_compressed) {
+    RawCloud cloud = decodeLas(unpackedLas(content));
+    cloud.is_compressed = true;
+    return cloud;
+  }
   const std::string_view body = content.substr(std::min(content.size(), header.points_begin));
-  return decodePoints(body, header, header.points, crsOf(content, header.points_begin));
+  return decodePoints(body, header, header.points, crsOf(content, header));
 }
 
 std::optional<RecordFile> lasRecords(std::string_view head, std::uint64_t file_size) {
-  const LasHeader header = parseHeader(head, file_size);
-  const std::string crs = crsOf(head, header.points_begin);
+  const LasHeader header = parseLasHeader(head, file_size);
+  if (header.is_compressed)
+    throw WorkError("it is compressed (LAZ), and cannot be read in parts, as --tile asks for: " +
+                    std::string(UNPACK_LAZ));
+  const std::string crs = crsOf(head, header);
   return RecordFile{header.points_begin,
                     header.record_bytes,
                     header.points,
@@ -289,10 +288,11 @@ std::optional<RecordFile> lasRecords(std::string_view head, std::uint64_t file_s
 }
 
 std::string reclassifiedLas(std::string content, const std::vector<int>& classes) {
-  const LasHeader header = parseHeader(content, content.size());
+  const LasHeader header = parseLasHeader(content, content.size());
   if (classes.size() != header.points)
     throw WorkError("it has changed: it had " + std::to_string(classes.size()) + " points and has " +
                     std::to_string(header.points));
+  if (header.is_compressed) return packedLas(reclassifiedLas(unpackedLas(content), classes));
   for (std::size_t n = 0; n < classes.size(); ++n)
     if (classes[n] >= 0)
       reclassify(header, content.data() + header.points_begin + n * header.record_bytes, classes[n]);

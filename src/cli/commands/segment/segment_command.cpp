@@ -41,7 +41,9 @@ constexpr const char* HELP_AFTER = R"(
 DIR is made if need be and receives
   labelled.pcd                           all points, in order, with label (0 ground, 1 object, 2 neither) and
                                          segment (1.. by falling size, 0 none)
-  labelled.las                           where CLOUD is LAS: the same file with other classes (see --classes)
+  labelled.las                           where CLOUD is LAS: the same file with other classes (see --classes);
+                                         labelled.laz where it is LAZ, which is read where the program is built
+                                         with LASzip
   ground.pcd objects.pcd                 the ground points and the object points
   ground_surface.pcd ground_surface.asc  the estimated ground, as points and as an ESRI ASCII grid; with fft the
                                          points tell where it is supported by ground seen nearby, and how
@@ -385,7 +387,7 @@ void segment(const po::variables_map& values) {
   progress.begin("write", "Writing to " + directory);
   makeDirectory(directory);
   writeClouds(directory, cloud, segmentation);
-  if (cloud.format == CloudFormat::LAS) writeLas(directory, input, segmenter, segmentation, classes);
+  if (cloud.format == CloudFormat::LAS) writeLas(directory, input, cloud, segmenter, segmentation, classes);
   writeGroundSurface(directory, cloud, segmentation, raster);
   writeSegments(directory, cloud, segmentation);
   progress.begin("pictures", "Drawing pictures to " + directory);

@@ -138,8 +138,8 @@ void writeClouds(const std::string& directory, const Cloud& cloud, const Segment
   write("objects.pcd", selectPoints(labelled, segmentation.objects.indices));
 }
 
-void writeLas(const std::string& directory, const std::string& input, const Segmenter& segmenter,
-              const Segmentation& segmentation, const LasClasses& classes) {
+void writeLas(const std::string& directory, const std::string& input, const Cloud& cloud,
+              const Segmenter& segmenter, const Segmentation& segmentation, const LasClasses& classes) {
   // Only the robust estimator calls points objects because they lie below the ground.
   const bool tells_below = segmenter.fft != nullptr && segmenter.fft->getEstimator() == Estimator::ROBUST;
   const std::vector<double> heights =
@@ -150,7 +150,7 @@ void writeLas(const std::string& directory, const std::string& input, const Segm
     if (segmentation.labels[n] == core::Label::OBJECT)
       numbers[n] = tells_below && heights[n] < 0 ? classes.below : classes.object;
   }
-  writeReclassified(directory + "/labelled.las", input, numbers);
+  writeReclassified(directory + (cloud.is_compressed ? "/labelled.laz" : "/labelled.las"), input, numbers);
 }
 
 void writeGroundSurface(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation,

@@ -20,11 +20,11 @@ pcl::PCLPointCloud2 labelledFields(const Cloud& cloud, const Segmentation& segme
 /// `segment`; a label or segment that the input brought is kept as `truth` or `truth_segment`.
 void writeClouds(const std::string& directory, const Cloud& cloud, const Segmentation& segmentation);
 
-/// Writes labelled.las: the LAS file `input` with the classes of what its points are; those that are neither
-/// ground nor object keep theirs.
+/// Writes labelled.las, or labelled.laz of a compressed cloud: the LAS file `input` with the classes of what
+/// its points are; those that are neither ground nor object keep theirs.
 /// \throws WorkError naming the file
-void writeLas(const std::string& directory, const std::string& input, const Segmenter& segmenter,
-              const Segmentation& segmentation, const LasClasses& classes);
+void writeLas(const std::string& directory, const std::string& input, const Cloud& cloud,
+              const Segmenter& segmenter, const Segmentation& segmentation, const LasClasses& classes);
 
 /// How ground_surface.tif is written.
 struct RasterOptions {
