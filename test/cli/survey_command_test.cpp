@@ -87,6 +87,38 @@ TEST_F(SurveyCommand, GoesOnWhereItWasBrokenOff) {
   EXPECT_EQ(contentOf(outputOf("pairs.csv")).find("MARK"), std::string::npos);
 }
 
+/// pairs.csv without the seconds.
+std::string withoutSeconds(const std::string& csv) {
+  constexpr int SECONDS = 15;  // column
+  std::istringstream lines(csv);
+  std::string result;
+  for (std::string line; std::getline(lines, line); result += '\n') {
+    std::istringstream fields(line);
+    std::string field;
+    for (int n = 0; std::getline(fields, field, ','); ++n) result += (n == SECONDS ? "" : field) + ",";
+  }
+  return result;
+}
+
+TEST_F(SurveyCommand, ShardsAndThreadsGiveTheSamePairs) {
+  survey({"--methods", "fft", "--quiet", "--threads", "1"});
+  const std::string expected = withoutSeconds(contentOf(outputOf("pairs.csv"))),
+                    poses = contentOf(outputOf("poses.csv"));
+  std::filesystem::remove_all(output());
+  survey({"--methods", "fft", "--quiet", "--threads", "3"});
+  EXPECT_EQ(withoutSeconds(contentOf(outputOf("pairs.csv"))), expected);
+  EXPECT_EQ(contentOf(outputOf("poses.csv")), poses);
+  std::filesystem::remove_all(output());
+  survey({"--methods", "fft", "--quiet", "--shard", "2/3"});
+  survey({"--methods", "fft", "--quiet", "--shard", "1/3"});
+  EXPECT_FALSE(std::filesystem::exists(outputOf("pairs.csv")));
+  survey({"--methods", "fft", "--quiet"});
+  EXPECT_EQ(withoutSeconds(contentOf(outputOf("pairs.csv"))), expected);
+  EXPECT_EQ(contentOf(outputOf("poses.csv")), poses);
+  for (const char* shard : {"0/3", "4/3", "1", "1/", "a/b", "-1/3"})
+    EXPECT_THROW(survey({"--shard", shard}), UsageError) << shard;
+}
+
 TEST_F(SurveyCommand, WhatIsNoSubmapIsLeftOutAndCounted) {
   const std::string folder = copyOfTwo("other");
   std::filesystem::remove(folder + "/truth.csv");

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <sstream>
 
 #include "commands/survey/survey_pairs.h"
@@ -107,6 +108,44 @@ TEST_F(SurveyFiles, DamagedPairsAreRefusedNamingTheFile) {
   EXPECT_THROW(readPairs(path, {"a.pcd", "b.pcd"}), WorkError);
   makeFile("pairs.csv", "method\n");
   EXPECT_THROW(readPairs(path, {"a.pcd", "b.pcd"}), WorkError);
+}
+
+TEST_F(SurveyFiles, AJournalThatWasCutOffWithinALineHasTheLinesBeforeIt) {
+  const std::vector<std::string> names = {"a.pcd", "b.pcd"};
+  const nlohmann::ordered_json parameters{{"version", "1"}};
+  const std::string journal = pathOf("pairs.journal");
+  PairResult first = someResult(), second = first;
+  second.method = "other";
+  SurveyRecord(pathOf(""), parameters, names, std::nullopt).add(first);
+  const std::string whole = contentOf(journal);
+  SurveyRecord(pathOf(""), parameters, names, std::nullopt).add(second);
+  EXPECT_EQ(contentOf(journal).rfind(whole, 0), 0U);
+  makeFile("pairs.journal", whole + whole.substr(whole.find('\n') + 1, 100));  // as a kill leaves it
+  SurveyRecord record(pathOf(""), parameters, names, std::nullopt);
+  ASSERT_NE(record.find(first.method, {first.reference, first.moving}), nullptr);
+  EXPECT_EQ(record.find("other", {first.reference, first.moving}), nullptr);
+  record.add(second);
+  record.finish({first, second});
+  EXPECT_FALSE(std::filesystem::exists(journal));
+  EXPECT_EQ(contentOf(pathOf("pairs.csv")), asCsv({first, second}, names));
+}
+
+TEST_F(SurveyFiles, TheLastRunHasWhatTheShardsFound) {
+  const std::vector<std::string> names = {"a.pcd", "b.pcd"};
+  const nlohmann::ordered_json parameters{{"version", "1"}};
+  PairResult first = someResult(), second = first;
+  second.method = "other";
+  SurveyRecord one(pathOf(""), parameters, names, Shard{1, 2}),
+      two(pathOf(""), parameters, names, Shard{2, 2});
+  one.add(first);
+  two.add(second);
+  SurveyRecord all(pathOf(""), parameters, names, std::nullopt);
+  EXPECT_NE(all.find(first.method, {first.reference, first.moving}), nullptr);
+  EXPECT_NE(all.find("other", {first.reference, first.moving}), nullptr);
+  const nlohmann::ordered_json others{{"version", "2"}};
+  EXPECT_EQ(
+      SurveyRecord(pathOf(""), others, names, std::nullopt).find("other", {first.reference, first.moving}),
+      nullptr);
 }
 
 TEST(SurveyReport, PrintsTheColumnsOfThePaperAndNanWithoutAlignments) {

@@ -15,27 +15,6 @@ namespace {
 constexpr double DEGREE = EIGEN_PI / 180;
 constexpr std::size_t MOST_NEIGHBOURS = 6;  // that a newcomer is aligned with: those it overlaps most
 
-/// Radius about the middle of the cells within which a scan covers anything, and that middle [m].
-struct Circle {
-  Eigen::Vector3d centre;
-  double radius;
-};
-
-Circle circleAround(const ScanCoverage& coverage) {
-  const Eigen::Vector2d sides(static_cast<double>(coverage.depth.rows()) * coverage.geometry.cell_size,
-                              static_cast<double>(coverage.depth.cols()) * coverage.geometry.cell_size);
-  const Eigen::Vector2d middle = coverage.geometry.origin + 0.5 * sides;
-  return {{middle.x(), middle.y(), 0}, 0.5 * sides.norm()};
-}
-
-/// False for scans that are too far apart to overlap, which is cheaper to tell than by how much they do.
-bool mayOverlap(const ScanCoverage& a, const Eigen::Isometry3d& world_from_a, const ScanCoverage& b,
-                const Eigen::Isometry3d& world_from_b) {
-  const Circle around_a = circleAround(a), around_b = circleAround(b);
-  const Eigen::Vector3d apart = world_from_a * around_a.centre - world_from_b * around_b.centre;
-  return apart.head<2>().norm() < around_a.radius + around_b.radius;
-}
-
 /// The result of a pair as far as it does not depend on what was found.
 PairResult resultFor(const PlannedPair& pair, const std::vector<SurveyScan>& scans,
                      const Eigen::Isometry3d& guess) {

@@ -84,5 +84,18 @@ TEST(OtherOverlappingPairs, AreThoseNotListed) {
   EXPECT_THROW(otherOverlappingPairs(coverages, {}, {}, 0.2), std::invalid_argument);
 }
 
+TEST(OtherOverlappingPairs, AreThoseThatALookAtAllPairsFinds) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (int n = 0; n < 60; ++n) poses.push_back(at((n * 37) % 41, (n * 11) % 17, 0.3 * n));
+  const std::vector<ScanCoverage> coverages(poses.size(), rectangle());
+  Indices expected;
+  for (std::size_t a = 0; a < poses.size(); ++a)
+    for (std::size_t b = a + 1; b < poses.size(); ++b)
+      if (overlapShare(coverages[a], coverages[b], poses[a].inverse() * poses[b]) >= 0.05)
+        expected.emplace_back(a, b);
+  ASSERT_GT(expected.size(), 20U);
+  EXPECT_EQ(indicesOf(otherOverlappingPairs(coverages, poses, {}, 0.05)), expected);
+}
+
 }  // namespace
 }  // namespace pcl_fft_ground::core

@@ -28,6 +28,11 @@ struct SubmapPair {
  */
 PCL_FFT_GROUND_CORE_EXPORT std::vector<SubmapPair> chainPairs(const std::vector<Eigen::Vector3d>& centroids);
 
+/// False for scans that are too far apart to overlap, seen from above: cheaper to tell than by how much they
+/// do.
+PCL_FFT_GROUND_CORE_EXPORT bool mayOverlap(const ScanCoverage& a, const Eigen::Isometry3d& world_from_a,
+                                           const ScanCoverage& b, const Eigen::Isometry3d& world_from_b);
+
 /** All pairs of sub-maps that overlap, but those that are listed already, whichever way round.
  * \param coverages what each sub-map covers, in its own frame
  * \param world_from_submap poses of the sub-maps; as many

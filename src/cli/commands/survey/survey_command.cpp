@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -35,8 +36,9 @@ own, with its results in DIR/NAME of the folder; the tables are then printed for
 
 constexpr const char* HELP_AFTER = R"(
 DIR is made if need be and receives
-  pairs.csv                         all results, a line per pair and method, written after each: a run that was broken
-                                    off goes on where it stopped, if its parameters and sub-maps are the same.
+  pairs.csv                         all results, a line per pair and method. Until it is written a pairs.journal takes
+                                    each result in, and a run that was broken off goes on where it stopped, if its
+                                    parameters and sub-maps are the same.
                                     Transforms are between the points less their `origins` in survey.json, if any
   poses.csv                         pose of each sub-map by the global alignment: submap,x,y,z,qx,qy,qz,qw
   merged.pcd                        all sub-maps in one, a point per cubic centimetre, with the number of the sub-map;
@@ -44,6 +46,10 @@ DIR is made if need be and receives
   site_before.png site_after.png    the site as navigation has it and after global alignment
   survey.json parameters.json       both tables and the global alignment; the parameters. Of several folders DIR has a
                                     survey.json, too, of all of them
+
+A survey can be shared among machines that see the same folders: --shard 1/3, 2/3 and 3/3 align a third of the pairs
+each and write nothing but a journal; a last run without --shard makes the results of them. A shard that was broken off
+goes on where it stopped, or the last run does its rest.
 
 Examples:
   pcl_fft_ground simulate survey wreck -o wreck --points 200000
@@ -155,12 +161,28 @@ po::options_description surveyOptions() {
       "standard deviation of the places by navigation [m], 0.0001 to 10000");
   add("heading-sigma", po::value<double>()->default_value(sigmas.heading, "2")->value_name("DEG"),
       "standard deviation of the headings by navigation [degrees], 0.001 to 180");
+  add("shard", po::value<std::string>()->value_name("I/N"),
+      "align only the I-th of N shares of the pairs, I from 1 to N: other runs do the rest");
   addThreadsOption(options);
   addReportOption(options);
   add("json", po::bool_switch(), "print survey.json");
   add("quiet", po::bool_switch(), "print nothing but errors");
   add("help,h", po::bool_switch(), "show this text");
   return options;
+}
+
+/// \throws UsageError unless it is I/N with I from 1 to N
+std::optional<Shard> shardOf(const po::variables_map& values) {
+  if (values.count("shard") == 0) return std::nullopt;
+  const auto text = values["shard"].as<std::string>();
+  std::istringstream stream(text);
+  Shard shard;
+  char slash = 0;
+  const bool is_read = text.find('-') == std::string::npos &&
+                       static_cast<bool>(stream >> shard.number >> slash >> shard.count) && stream.eof();
+  if (!is_read || slash != '/' || shard.number < 1 || shard.number > shard.count)
+    throw UsageError("--shard " + text + ": allowed is I/N, I from 1 to N");
+  return shard;
 }
 
 SurveyRequest parseSurveyRequest(const po::variables_map& values) {
@@ -177,6 +199,7 @@ SurveyRequest parseSurveyRequest(const po::variables_map& values) {
   for (const std::string& method : request.methods)
     if (method != DENSE_ICP) request.mapping = method;
   request.segmenters = makeSegmenters(request.methods, values, request.settings.version);
+  request.shard = shardOf(values);
   request.surveys = tasksOf(values["folder"].as<std::vector<std::string>>(), request);
   return request;
 }
@@ -201,6 +224,18 @@ ordered_json reportTogether(const SurveyRequest& request, const SurveyOutcome& t
   return content;
 }
 
+/// The shard's share of every survey.
+void alignShards(SurveyRequest& request, Progress& progress, bool quiet) {
+  for (const SurveyTask& task : request.surveys) {
+    makeDirectory(task.directory);
+    const std::size_t pairs = processShard(task, request, progress);
+    progress.end();
+    if (!quiet)
+      std::cout << task.name << ": " << pairs << " pairs, shard " << request.shard->number << " of "
+                << request.shard->count << '\n';
+  }
+}
+
 void surveyFolders(const po::variables_map& values) {
   SurveyRequest request = parseSurveyRequest(values);
   const core::Threads threads(threadsOf(values));
@@ -208,6 +243,7 @@ void surveyFolders(const po::variables_map& values) {
   const std::string page = reportPath(values, request.directory);
   makeDirectory(request.directory);
   Progress progress(quiet);
+  if (request.shard) return alignShards(request, progress, quiet);
   std::vector<SurveyOutcome> outcomes;
   std::vector<ordered_json> reports;
   for (const SurveyTask& task : request.surveys) {

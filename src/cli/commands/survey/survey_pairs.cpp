@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -25,6 +27,7 @@ constexpr const char* HEADER =
     "overlap_crispness_after,translation_error,rotation_error,seconds,x,y,z,qx,qy,qz,qw,cxx,cxy,cxz,cxa,cxb,"
     "cxc,cyy,"
     "cyz,cya,cyb,cyc,czz,cza,czb,czc,caa,cab,cac,cbb,cbc,ccc,refusal";
+constexpr const char* JOURNAL = ".journal";
 const std::array<const char*, 2> KINDS{"chain", "other"};
 const std::array<const char*, 4> STATUSES{"aligned", "refused", "unprocessed", "not-run"};
 
@@ -32,9 +35,11 @@ std::ostream& operator<<(std::ostream& out, const std::optional<double>& value) 
   return value ? out << *value : out;
 }
 
-std::string asLine(const PairResult& r, const std::vector<std::string>& names) {
+constexpr int IN_TABLE = 12, IN_FULL = 17;  // digits: with so many a number is read as it was
+
+std::string asLine(const PairResult& r, const std::vector<std::string>& names, int digits) {
   std::ostringstream line;
-  line << std::setprecision(12) << r.method << ',' << KINDS.at(static_cast<std::size_t>(r.kind)) << ','
+  line << std::setprecision(digits) << r.method << ',' << KINDS.at(static_cast<std::size_t>(r.kind)) << ','
        << names[r.reference] << ',' << names[r.moving] << ','
        << STATUSES.at(static_cast<std::size_t>(r.status)) << ',' << r.matches << ',' << r.score << ','
        << r.overlap << ',' << r.nx_before << ',' << r.nx_after << ',' << r.crispnessChange() << ','
@@ -121,23 +126,20 @@ std::string contentOf(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-}  // namespace
-
-std::string asCsv(const std::vector<PairResult>& results, const std::vector<std::string>& names) {
-  std::string csv = std::string(HEADER) + "\n";
-  for (const PairResult& result : results) csv += asLine(result, names);
-  return csv;
+std::string wholeLinesOf(const std::string& path) {
+  const std::string content = contentOf(path);
+  return content.substr(0, content.rfind('\n') + 1);  // nothing where there is no end of a line
 }
 
-std::vector<PairResult> readPairs(const std::string& path, const std::vector<std::string>& names) {
-  std::ifstream file(path);
+/// \param path named in errors
+std::vector<PairResult> parseTable(std::istream& table, const std::string& path,
+                                   const std::vector<std::string>& names) {
   std::string line;
-  if (!file) throw WorkError(path + ": cannot be read");
-  if (!std::getline(file, line)) return {};
+  if (!std::getline(table, line)) return {};
   if (line != HEADER) throw WorkError(path + ": is no table of pairs; delete it to start anew");
   std::vector<PairResult> results;
   try {
-    while (std::getline(file, line)) results.push_back(parseLine(line, names));
+    while (std::getline(table, line)) results.push_back(parseLine(line, names));
   } catch (const std::logic_error&) {  // of the conversions: a word that is no number or not in a list
     throw WorkError(path + ": '" + line.substr(0, 40) +
                     "...' is no line of a table of pairs; delete the file to start anew");
@@ -145,30 +147,96 @@ std::vector<PairResult> readPairs(const std::string& path, const std::vector<std
   return results;
 }
 
+}  // namespace
+
+std::string asCsv(const std::vector<PairResult>& results, const std::vector<std::string>& names) {
+  std::string csv = std::string(HEADER) + "\n";
+  for (const PairResult& result : results) csv += asLine(result, names, IN_TABLE);
+  return csv;
+}
+
+std::vector<PairResult> readPairs(const std::string& path, const std::vector<std::string>& names) {
+  std::ifstream file(path);
+  if (!file) throw WorkError(path + ": cannot be read");
+  return parseTable(file, path, names);
+}
+
 SurveyRecord::SurveyRecord(const std::string& directory, const nlohmann::ordered_json& parameters,
-                           const std::vector<std::string>& names)
-    : path_(directory + "/pairs.csv"), names_(names) {
-  const std::string parameters_path = directory + "/parameters.json";
+                           const std::vector<std::string>& names, const std::optional<Shard>& shard)
+    : directory_(directory),
+      journal_(directory + (shard ? "/pairs." + std::to_string(shard->number) + "-of-" +
+                                        std::to_string(shard->count) + JOURNAL
+                                  : std::string("/pairs") + JOURNAL)),
+      names_(names) {
+  const std::string table = directory + "/pairs.csv", parameters_path = directory + "/parameters.json";
   const std::string wanted = asText(parameters);
   std::error_code ignored;
-  if (std::filesystem::exists(path_, ignored) && contentOf(parameters_path) == wanted) {
-    results_ = readPairs(path_, names_);
+  const bool is_known = std::filesystem::exists(parameters_path, ignored);
+  if (is_known && contentOf(parameters_path) == wanted) {
+    if (std::filesystem::exists(table, ignored)) take(readPairs(table, names_));
+    for (const std::string& path : journals()) {
+      std::istringstream lines(wholeLinesOf(path));
+      take(parseTable(lines, path, names_));
+      if (path == journal_) writeText(journal_, lines.str());  // without what was cut off
+    }
     return;
   }
-  std::filesystem::remove(path_, ignored);
+  std::filesystem::remove(table, ignored);
+  // Where there are no parameters yet another shard may have begun a moment ago.
+  if (is_known)
+    for (const std::string& path : journals()) std::filesystem::remove(path, ignored);
   writeText(parameters_path, wanted);
 }
 
+SurveyRecord::Key SurveyRecord::keyOf(const PairResult& result) {
+  return {result.method, result.reference, result.moving};
+}
+
+std::vector<std::string> SurveyRecord::journals() const {
+  std::vector<std::string> paths;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("pairs", 0) == 0 && entry.path().extension() == JOURNAL)
+      paths.push_back(directory_ + "/" + name);
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+void SurveyRecord::take(const std::vector<PairResult>& results) {
+  for (const PairResult& result : results) results_.emplace(keyOf(result), result);
+}
+
 const PairResult* SurveyRecord::find(const std::string& method, const core::SubmapPair& pair) const {
-  const auto found = std::find_if(results_.begin(), results_.end(), [&](const PairResult& result) {
-    return result.method == method && result.reference == pair.reference && result.moving == pair.moving;
-  });
-  return found == results_.end() ? nullptr : &*found;
+  const auto found = results_.find({method, pair.reference, pair.moving});
+  return found == results_.end() ? nullptr : &found->second;
 }
 
 void SurveyRecord::add(const PairResult& result) {
-  results_.push_back(result);
-  writeText(path_, asCsv(results_, names_));
+  std::error_code ignored;
+  const bool is_new = !std::filesystem::exists(journal_, ignored);
+  errno = 0;
+  std::ofstream journal(journal_, std::ios::binary | std::ios::app);
+  if (is_new) journal << HEADER << '\n';
+  const std::string line = asLine(result, names_, IN_FULL);
+  journal << line;
+  journal.close();
+  if (!journal)
+    throw WorkError("cannot write '" + journal_ +
+                    "': " + (errno != 0 ? std::strerror(errno) : "writing failed"));
+  // As a run that goes on from here will read it: what follows is the same bits then.
+  results_.emplace(keyOf(result), parseLine(line.substr(0, line.size() - 1), names_));
+}
+
+void SurveyRecord::finish(const std::vector<PairResult>& first) {
+  std::vector<PairResult> all = first;
+  std::map<Key, PairResult> others = results_;
+  for (const PairResult& result : first) others.erase(keyOf(result));
+  for (const auto& [key, result] : others) all.push_back(result);  // of other methods
+  writeText(directory_ + "/pairs.csv", asCsv(all, names_));
+  std::error_code ignored;
+  for (const std::string& path : journals()) std::filesystem::remove(path, ignored);
 }
 
 }  // namespace pcl_fft_ground::cli

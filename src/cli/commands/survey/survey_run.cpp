@@ -1,5 +1,6 @@
 #include "commands/survey/survey_run.h"
 
+#include <mutex>
 #include <stdexcept>
 
 #include "commands/survey/survey_pairs.h"
@@ -7,6 +8,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/pose_table.h"
+#include "pcl_fft_ground/core/scan/threads.h"
 #include "report/report.h"
 
 namespace pcl_fft_ground::cli {
@@ -18,7 +20,8 @@ struct PairTask {
   core::PlannedPair pair;
 };
 
-/// The pairs of the chain by every method, all other pairs that overlap by the one that makes the map.
+/// The pairs of the chain by every method, all other pairs that overlap by the one that makes the map; of a
+/// shard its share of them.
 std::vector<PairTask> tasksOf(const SurveyFolder& survey, const SurveyRequest& request) {
   std::vector<PairTask> tasks;
   for (const core::PlannedPair& pair : core::planPairs(survey.scans)) {
@@ -27,16 +30,20 @@ std::vector<PairTask> tasksOf(const SurveyFolder& survey, const SurveyRequest& r
     else
       for (const std::string& method : request.methods) tasks.push_back({method, pair});
   }
-  return tasks;
+  if (!request.shard) return tasks;
+  std::vector<PairTask> of_shard;
+  for (std::size_t n = request.shard->number - 1; n < tasks.size(); n += request.shard->count)
+    of_shard.push_back(tasks[n]);
+  return of_shard;
 }
 
-/// Aligns one pair from where navigation has it, and measures what came of it.
+/// Aligns one pair from where navigation has it, and measures what came of it. The scans are described.
 core::PairResult alignPair(const PairTask& task, const SurveyFolder& survey, SurveyScans& scans,
                            const SurveyRequest& request) {
   const core::SubmapPair& pair = task.pair.scans;
   const Eigen::Isometry3d guess = core::guessOf(pair, survey.scans);
-  const SubmapDescription& moving = scans.describe(task.method, pair.moving);
-  const SubmapDescription& reference = scans.describe(task.method, pair.reference);
+  const SubmapDescription& moving = scans.described(task.method, pair.moving);
+  const SubmapDescription& reference = scans.described(task.method, pair.reference);
   const std::string& error = moving.error.empty() ? reference.error : moving.error;
   core::AlignmentParameters parameters = request.settings.alignment;
   if (segmenterOf(task.method) != task.method) parameters.fallback = core::Fallback::DENSE;
@@ -47,33 +54,46 @@ core::PairResult alignPair(const PairTask& task, const SurveyFolder& survey, Sur
                                                             reference.segments, guess, parameters, how)
                                           : core::notRun(task.pair, survey.scans, "not run: " + error);
   result.method = task.method;
-  const core::Points& moving_points = scans.points(pair.moving);
-  const core::Points& reference_points = scans.points(pair.reference);
-  result = core::withCrispness(std::move(result), guess, moving_points, reference_points);
+  const auto moving_points = scans.points(pair.moving), reference_points = scans.points(pair.reference);
+  result = core::withCrispness(std::move(result), guess, *moving_points, *reference_points);
   if (survey.truth.empty()) return result;
   return core::withErrors(std::move(result), survey.scans, survey.truth);
 }
 
-/// Aligns what the record does not have yet.
+/// Aligns what the record does not have yet: the sub-maps are described one after the other, with all threads
+/// to each, then each thread takes pairs.
 std::vector<core::PairResult> alignPairs(const SurveyTask& task, SurveyRequest& request,
                                          const SurveyFolder& survey, Progress& progress) {
   std::vector<std::string> names;
   for (const Submap& submap : survey.submaps) names.push_back(submap.name);
-  SurveyRecord record(task.directory, task.parameters, names);
+  SurveyRecord record(task.directory, task.parameters, names, request.shard);
   SurveyScans scans(survey.submaps, request.settings, request.segmenters);
   const std::vector<PairTask> pairs = tasksOf(survey, request);
-  std::vector<core::PairResult> results;
-  for (const PairTask& pair : pairs) {
-    const core::PairResult* known = record.find(pair.method, pair.pair.scans);
-    if (known == nullptr) {
-      progress.begin("align", task.name + " [" + std::to_string(results.size() + 1) + "/" +
+  std::vector<const PairTask*> open;
+  for (const PairTask& pair : pairs)
+    if (record.find(pair.method, pair.pair.scans) == nullptr) open.push_back(&pair);
+  for (const PairTask* pair : open)
+    for (const std::size_t submap : {pair->pair.scans.moving, pair->pair.scans.reference}) {
+      progress.begin("describe", task.name + ": " + pair->method + " on " + names[submap]);
+      scans.describe(pair->method, submap);
+    }
+  std::mutex mutex;
+  std::size_t begun = pairs.size() - open.size();
+  core::forEachPart(static_cast<Eigen::Index>(open.size()), [&](Eigen::Index n) {
+    const PairTask& pair = *open[static_cast<std::size_t>(n)];
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      progress.begin("align", task.name + " [" + std::to_string(++begun) + "/" +
                                   std::to_string(pairs.size()) + "] " + names[pair.pair.scans.reference] +
                                   " and " + names[pair.pair.scans.moving] + ": " + pair.method);
-      record.add(alignPair(pair, survey, scans, request));
-      known = &record.results().back();
     }
-    results.push_back(*known);
-  }
+    const core::PairResult result = alignPair(pair, survey, scans, request);
+    const std::lock_guard<std::mutex> lock(mutex);
+    record.add(result);
+  });
+  std::vector<core::PairResult> results;
+  for (const PairTask& pair : pairs) results.push_back(*record.find(pair.method, pair.pair.scans));
+  if (!request.shard) record.finish(results);
   return results;
 }
 
@@ -139,6 +159,13 @@ SurveyOutcome processSurvey(const SurveyTask& task, SurveyRequest& request, Prog
                         placementOf("chained", voxels.chained, survey, poses.chained),
                         placementOf("global", voxels.global, survey, poses.global)};
   return outcome;
+}
+
+std::size_t processShard(const SurveyTask& task, SurveyRequest& request, Progress& progress) {
+  const SurveyFolder survey = readSurvey(task.folder, request.sigmas, [&](std::size_t submap) {
+    progress.begin("read", task.name + ": reading sub-map " + std::to_string(submap));
+  });
+  return alignPairs(task, request, survey, progress).size();
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "commands/survey/survey_pairs.h"
 #include "commands/survey/survey_scans.h"
 #include "progress.h"
 
@@ -28,6 +29,7 @@ struct SurveyRequest {
   core::NavigationSigmas sigmas;
   AlignmentSettings settings;
   std::vector<Segmenter> segmenters;  ///< one for each method that needs one
+  std::optional<Shard> shard;         ///< of the pairs, where other runs do the rest
 };
 
 /// The sub-maps placed in one way.
@@ -57,5 +59,11 @@ struct SurveyOutcome {
  * \throws WorkError naming the file or folder that cannot be read or written
  */
 SurveyOutcome processSurvey(const SurveyTask& task, SurveyRequest& request, Progress& progress);
+
+/** Aligns the pairs of the request's shard and leaves the rest to other runs: one of all pairs goes on from
+ * there.
+ * \return how many pairs the shard has
+ */
+std::size_t processShard(const SurveyTask& task, SurveyRequest& request, Progress& progress);
 
 }  // namespace pcl_fft_ground::cli

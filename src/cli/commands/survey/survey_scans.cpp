@@ -125,26 +125,28 @@ SurveyScans::SurveyScans(const std::vector<Submap>& submaps, const AlignmentSett
                          std::vector<Segmenter>& segmenters)
     : submaps_(submaps), settings_(settings), segmenters_(segmenters) {}
 
-const SurveyScans::Loaded& SurveyScans::load(std::size_t submap) {
+std::shared_ptr<const SurveyScans::Loaded> SurveyScans::load(std::size_t submap) {
+  const std::lock_guard<std::mutex> lock(mutex_);
   constexpr std::size_t MOST_LOADED = 3;
   const auto found = std::find_if(loaded_.begin(), loaded_.end(),
                                   [&](const auto& loaded) { return loaded->submap == submap; });
-  std::unique_ptr<Loaded> wanted;
+  std::shared_ptr<Loaded> wanted;
   if (found != loaded_.end()) {
     wanted = std::move(*found);
     loaded_.erase(found);
   } else {
     Cloud cloud = readCloud(submaps_[submap].path);
     core::Points points = usablePoints(*cloud.points).points;
-    wanted = std::make_unique<Loaded>(Loaded{submap, std::move(cloud), std::move(points)});
+    wanted = std::make_shared<Loaded>(Loaded{submap, std::move(cloud), std::move(points)});
   }
   loaded_.push_front(std::move(wanted));
   if (loaded_.size() > MOST_LOADED) loaded_.pop_back();
-  return *loaded_.front();
+  return loaded_.front();
 }
 
-const core::Points& SurveyScans::points(std::size_t submap) {
-  return load(submap).points;
+std::shared_ptr<const core::Points> SurveyScans::points(std::size_t submap) {
+  const std::shared_ptr<const Loaded> loaded = load(submap);
+  return {loaded, &loaded->points};
 }
 
 const SubmapDescription& SurveyScans::describe(const std::string& method, std::size_t submap) {
@@ -155,15 +157,15 @@ const SubmapDescription& SurveyScans::describe(const std::string& method, std::s
 }
 
 SubmapDescription SurveyScans::describeAnew(const std::string& segmenter, std::size_t submap) {
-  const Loaded& loaded = load(submap);
+  const std::shared_ptr<const Loaded> loaded = load(submap);
   ScanDescriber<Point> describer;
   describer.setSegmentParameters(settings_.segments);
-  if (segmenter == DENSE_ICP) return {describer.describeAsGround(loaded.cloud.points), describer.getError()};
+  if (segmenter == DENSE_ICP) return {describer.describeAsGround(loaded->cloud.points), describer.getError()};
   const auto found = std::find_if(segmenters_.begin(), segmenters_.end(),
                                   [&](const Segmenter& s) { return s.method == segmenter; });
   if (found == segmenters_.end()) throw std::invalid_argument("no segmenter for method " + segmenter);
   describer.setGroundSegmentation(found->filter);
-  core::ScanSegments segments = describer.describe(loaded.cloud.points);
+  core::ScanSegments segments = describer.describe(loaded->cloud.points);
   return {std::move(segments), describer.getError()};
 }
 

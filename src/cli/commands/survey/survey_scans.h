@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,14 +82,18 @@ class SurveyScans {
   SurveyScans(const std::vector<Submap>& submaps, const AlignmentSettings& settings,
               std::vector<Segmenter>& segmenters);
 
-  /// The points of a sub-map that are of use; the reference holds until the points or segments of two other
-  /// sub-maps are asked for.
+  /// The points of a sub-map that are of use. Threads may ask at the same time.
   /// \throws WorkError naming the file
-  const core::Points& points(std::size_t submap);
+  std::shared_ptr<const core::Points> points(std::size_t submap);
 
   /// What a method finds in a sub-map, with or without WITH_FALLBACK. \throws WorkError naming the file that
   /// cannot be read
   const SubmapDescription& describe(const std::string& method, std::size_t submap);
+
+  /// The same of what has been described. Threads may ask at the same time.
+  const SubmapDescription& described(const std::string& method, std::size_t submap) const {
+    return descriptions_.at({segmenterOf(method), submap});
+  }
 
  private:
   struct Loaded {
@@ -96,13 +101,14 @@ class SurveyScans {
     Cloud cloud;
     core::Points points;
   };
-  const Loaded& load(std::size_t submap);
+  std::shared_ptr<const Loaded> load(std::size_t submap);
   SubmapDescription describeAnew(const std::string& segmenter, std::size_t submap);
 
   const std::vector<Submap>& submaps_;
   const AlignmentSettings& settings_;
   std::vector<Segmenter>& segmenters_;
-  std::deque<std::unique_ptr<Loaded>> loaded_;  ///< the last one asked for in front
+  std::mutex mutex_;                            // of what follows
+  std::deque<std::shared_ptr<Loaded>> loaded_;  ///< the last one asked for in front
   std::map<std::pair<std::string, std::size_t>, SubmapDescription> descriptions_;
 };
 
