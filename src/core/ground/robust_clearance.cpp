@@ -22,16 +22,6 @@ Clearance::Patches::Patches(const GroundSurface& surface)
       x_end(std::nextafter(static_cast<float>(rows), 0.0F)),
       y_end(std::nextafter(static_cast<float>(cols), 0.0F)) {}
 
-Clearance::Place Clearance::Patches::placeOf(float x, float y) const {
-  const float from_x = std::min(std::max((x - x_first) * per_metre, 0.0F), x_end);
-  const float from_y = std::min(std::max((y - y_first) * per_metre, 0.0F), y_end);
-  const auto i = static_cast<std::int32_t>(from_x), j = static_cast<std::int32_t>(from_y);
-  const float u = from_x - static_cast<float>(i), v = from_y - static_cast<float>(j);
-  // The nearest of the four centres is that of the point's own cell.
-  const std::int32_t row = i - (u < 0.5F ? 1 : 0), col = j - (v < 0.5F ? 1 : 0);
-  return {i + j * rows, std::clamp(row, 0, rows - 2) + std::clamp(col, 0, cols - 2) * (rows - 1), u, v};
-}
-
 Clearance::Clearance(const RobustGround& ground, const PointsView& points)
     : grid_(ground.surface),
       per_metre_(1 / ground.surface.geometry.cell_size),
@@ -57,26 +47,24 @@ void Clearance::makeReady(const RobustGround& ground) {
 
 /// Where cells are more than points most are empty: the patches that no point asks for stay as they are.
 void Clearance::makeReady(const RobustGround& ground, const PointsView& points) {
-  enum : char { NOT_ASKED, ASKED, READY };
-  std::vector<char> patches(patches_.size(), NOT_ASKED), cells(allowances_.size(), NOT_ASKED);
+  std::vector<bool> patches(patches_.size(), false), cells(allowances_.size(), false);
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
     const Place place = grid_.placeOf(points(0, n), points(1, n));
-    patches[static_cast<std::size_t>(place.patch)] = cells[static_cast<std::size_t>(place.cell)] = ASKED;
+    patches[static_cast<std::size_t>(place.patch)] = true;
+    cells[static_cast<std::size_t>(place.cell)] = true;
   }
-  const auto ready = [&](std::size_t patch) {
-    if (std::exchange(patches[patch], READY) == READY) return;
-    const auto number = static_cast<Eigen::Index>(patch);
-    patches_[patch] = patchAt(ground, number % grid_.rows, number / grid_.rows);
-  };
-  for (std::size_t patch = 0; patch < patches.size(); ++patch)
-    if (patches[patch] == ASKED) ready(patch);
   const Eigen::Index rows = ground.surface.height.rows();
-  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-    if (cells[cell] != ASKED) continue;
+  for (std::size_t cell = 0; cell < cells.size();
+       ++cell) {  // the allowance looks at the patch from its centre on
     const auto number = static_cast<Eigen::Index>(cell);
-    ready(grid_.number(number % rows + 1, number / rows + 1));  // that the allowance looks at
-    allowances_[cell] = allowanceOf(ground, number);
+    if (cells[cell]) patches[grid_.number(number % rows + 1, number / rows + 1)] = true;
   }
+  for (std::size_t patch = 0; patch < patches.size(); ++patch) {
+    const auto number = static_cast<Eigen::Index>(patch);
+    if (patches[patch]) patches_[patch] = patchAt(ground, number % grid_.rows, number / grid_.rows);
+  }
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    if (cells[cell]) allowances_[cell] = allowanceOf(ground, static_cast<Eigen::Index>(cell));
 }
 
 Clearance::Patch Clearance::patchAt(const RobustGround& ground, Eigen::Index i, Eigen::Index j) const {

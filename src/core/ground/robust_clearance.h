@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -51,7 +52,15 @@ class Clearance {
   /// continues.
   struct Patches {
     explicit Patches(const GroundSurface& surface);
-    Place placeOf(float x, float y) const;
+    Place placeOf(float x, float y) const {
+      const float from_x = std::min(std::max((x - x_first) * per_metre, 0.0F), x_end);
+      const float from_y = std::min(std::max((y - y_first) * per_metre, 0.0F), y_end);
+      const auto i = static_cast<std::int32_t>(from_x), j = static_cast<std::int32_t>(from_y);
+      const float u = from_x - static_cast<float>(i), v = from_y - static_cast<float>(j);
+      // The nearest of the four centres is that of the point's own cell.
+      const std::int32_t row = i - (u < 0.5F ? 1 : 0), col = j - (v < 0.5F ? 1 : 0);
+      return {i + j * rows, std::clamp(row, 0, rows - 2) + std::clamp(col, 0, cols - 2) * (rows - 1), u, v};
+    }
     std::size_t number(Eigen::Index i, Eigen::Index j) const {
       return static_cast<std::size_t>(i + j * rows);
     }
