@@ -28,7 +28,8 @@ sees. wreck is 4 m x 4 m with amphorae, half buried, alone or piled, on a mound;
 gently rolling bottom with pipe segments; reef is 4 m x 4 m of undulating ground with boulders. The file is a
 binary PCD with x y z [m], label (0 ground, 1 object, 2 neither: outliers, and object points lower than four
 standard deviations of the noise) and segment (number of the object, 0 none); its VIEWPOINT is the true pose.
-Equal seeds give equal files.
+Equal seeds give equal files. One scan is made by one thread, whatever --threads says: the sub-maps of a survey are
+shared.
 
 )";
 
