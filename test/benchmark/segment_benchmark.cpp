@@ -10,7 +10,9 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
+#include <pcl/segmentation/approximate_progressive_morphological_filter.h>
 #include <pcl/segmentation/extract_clusters.h>
+#include <pcl/segmentation/sac_segmentation.h>
 
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
@@ -195,6 +197,50 @@ void euclideanClusters(benchmark::State& state) {
   }
 }
 
+/// As much as reading all points three times: no method can be faster.
+void threePasses(benchmark::State& state) {
+  scan();
+  for (auto _ : state) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (int pass = 0; pass < 3; ++pass)
+      for (const Point& p : *scan()) sum += p.getVector3fMap();
+    benchmark::DoNotOptimize(sum);
+  }
+}
+
+/// With windows up to the largest object, cells of a thirty-sixth of it.
+void progressiveMorphological(benchmark::State& state) {
+  scan();
+  for (auto _ : state) {
+    pcl::ApproximateProgressiveMorphologicalFilter<Point> filter;
+    filter.setInputCloud(scan());
+    filter.setCellSize(static_cast<float>(largest_object / 36));
+    filter.setMaxWindowSize(36);
+    filter.setSlope(0.3F);
+    filter.setInitialDistance(static_cast<float>(0.02 * largest_object));
+    filter.setMaxDistance(static_cast<float>(0.2 * largest_object));
+    pcl::Indices ground;
+    filter.extract(ground);
+    benchmark::DoNotOptimize(ground.data());
+  }
+}
+
+void planeByMlesac(benchmark::State& state) {
+  scan();
+  for (auto _ : state) {
+    pcl::SACSegmentation<Point> segmentation;
+    segmentation.setInputCloud(scan());
+    segmentation.setModelType(pcl::SACMODEL_PLANE);
+    segmentation.setMethodType(pcl::SAC_MLESAC);
+    segmentation.setDistanceThreshold(0.02 * largest_object);
+    segmentation.setMaxIterations(50);
+    pcl::PointIndices plane;
+    pcl::ModelCoefficients coefficients;
+    segmentation.segment(plane, coefficients);
+    benchmark::DoNotOptimize(plane.indices.data());
+  }
+}
+
 void voxelClusters(benchmark::State& state) {
   objectIndices();
   for (auto _ : state) {
@@ -215,6 +261,9 @@ void registerAll() {
     RegisterBenchmark("segmentLowPass", segmentLowPass)->Arg(threads)->Unit(benchmark::kMillisecond);
     RegisterBenchmark("segmentRobust", segmentRobust)->Arg(threads)->Unit(benchmark::kMillisecond);
   }
+  RegisterBenchmark("threePasses", threePasses)->Unit(benchmark::kMillisecond);
+  RegisterBenchmark("progressiveMorphological", progressiveMorphological)->Unit(benchmark::kMillisecond);
+  RegisterBenchmark("planeByMlesac", planeByMlesac)->Unit(benchmark::kMillisecond);
   RegisterBenchmark("euclideanClusters", euclideanClusters)->Unit(benchmark::kMillisecond);
   RegisterBenchmark("voxelClusters", voxelClusters)->Unit(benchmark::kMillisecond);
 }
