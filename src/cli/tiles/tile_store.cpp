@@ -55,6 +55,35 @@ Array takeArray(Eigen::Index rows, Eigen::Index cols, ByteReader& reader) {
   return values;
 }
 
+void putRegion(const core::StandingRegion& region, ByteWriter& writer) {
+  writer.put(region.slope);
+  writer.put(region.is_land);
+  writer.put(region.broad);
+  for (const Eigen::Index end : {region.low_row, region.low_col, region.high_row, region.high_col})
+    writer.put(end);
+  for (const double sum : {region.area, region.border, region.pairs, region.ground_pairs, region.gentle_pairs,
+                           region.higher_pairs})
+    writer.put(sum);
+  std::vector<Eigen::Index> seam;
+  for (const auto& [row, col] : region.seam) seam.insert(seam.end(), {row, col});
+  writer.putAll(seam);
+}
+
+core::StandingRegion takeRegion(ByteReader& reader) {
+  core::StandingRegion region;
+  region.slope = reader.take<core::BreakSlope>();
+  region.is_land = reader.take<bool>();
+  region.broad = reader.take<bool>();
+  for (Eigen::Index* end : {&region.low_row, &region.low_col, &region.high_row, &region.high_col})
+    *end = reader.take<Eigen::Index>();
+  for (double* sum : {&region.area, &region.border, &region.pairs, &region.ground_pairs, &region.gentle_pairs,
+                      &region.higher_pairs})
+    *sum = reader.take<double>();
+  const auto seam = reader.takeAll<Eigen::Index>();
+  for (std::size_t n = 0; n + 1 < seam.size(); n += 2) region.seam.emplace_back(seam[n], seam[n + 1]);
+  return region;
+}
+
 }  // namespace
 
 void ByteReader::require(std::size_t bytes) const {
@@ -150,6 +179,8 @@ void putGround(const core::TileGround& tile, ByteWriter& writer) {
   writer.put(ground.scale);
   writer.put(ground.land_breaks);
   writer.putAll(ground.wavelengths);
+  writer.put(static_cast<std::uint64_t>(ground.standing.size()));
+  for (const core::StandingRegion& region : ground.standing) putRegion(region, writer);
   putArray(ground.elevation.elevation, writer);
   putArray(ground.elevation.observed, writer);
   putArray(ground.surface.height, writer);
@@ -173,6 +204,8 @@ core::TileGround takeGround(ByteReader& reader) {
   ground.scale = reader.take<double>();
   ground.land_breaks = reader.take<bool>();
   ground.wavelengths = reader.takeAll<double>();
+  for (auto regions = reader.take<std::uint64_t>(); regions > 0; --regions)
+    ground.standing.push_back(takeRegion(reader));
   ground.elevation.elevation = takeArray<Eigen::ArrayXXd>(cells.rows, cells.cols, reader);
   ground.elevation.observed = takeArray<core::Mask>(cells.rows, cells.cols, reader);
   ground.surface.height = takeArray<Eigen::ArrayXXd>(cells.rows, cells.cols, reader);

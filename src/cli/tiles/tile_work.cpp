@@ -1,6 +1,8 @@
 #include "tiles/tile_work.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -12,6 +14,7 @@ namespace pcl_fft_ground::cli {
 namespace {
 
 constexpr const char* GROUND = "ground";
+constexpr const char* AGAIN = "again";
 constexpr const char* LABELS = "labels";
 constexpr const char* OBJECTS = "objects";
 constexpr const char* SEGMENTS = "segments";
@@ -170,6 +173,52 @@ void eachSeamPoint(const ClusteredTile& seeing, const ClusteredTile& seen, std::
       for (std::size_t n = 0; n < seam.places.size(); ++n) add(seam.segments[n], seen.own[seam.places[n]]);
 }
 
+/// The breaks of the site's land and the tiles that they contradict: asked once, as what is fitted again
+/// tells no more about it.
+struct LandOfSite {
+  core::SiteBreaks breaks;
+  std::vector<std::uint64_t> contradicted;
+};
+
+LandOfSite landOfSite(const Site& site, const TileStore& store) {
+  const std::string file = store.path("land");
+  LandOfSite land;
+  if (std::filesystem::exists(file)) {
+    ByteReader reader = store.read(file);
+    land.breaks.land_breaks = reader.take<bool>();
+    land.breaks.verdicts = reader.takeAll<core::BreakVerdict>();
+    land.contradicted = reader.takeAll<std::uint64_t>();
+    return land;
+  }
+  std::vector<core::StandingRegion> standing;
+  for (std::size_t t = 0; t < site.tiling.size(); ++t) {
+    core::RobustGround ground = readGround(store, t).ground;
+    std::move(ground.standing.begin(), ground.standing.end(), std::back_inserter(standing));
+  }
+  land.breaks = core::breaksOf(site.plan, standing);
+  for (std::size_t t = 0; t < site.tiling.size(); ++t)
+    if (core::contradicts(readGround(store, t), land.breaks, site.tiling, t)) land.contradicted.push_back(t);
+  ByteWriter writer;
+  writer.put(land.breaks.land_breaks);
+  writer.putAll(land.breaks.verdicts);
+  writer.putAll(land.contradicted);
+  store.write(file, writer);
+  return land;
+}
+
+/// Of those points of a tile that its fit looked at.
+core::ClearanceCounts clearancesOf(const Site& site, const SiteGround& ground, const TileStore& store,
+                                   std::size_t tile) {
+  core::Points points = store.readPoints(tile, "sample", site.samples_of_tile[tile]);
+  const core::CellWindow own = site.tiling.core(tile);
+  Eigen::Index count = 0;
+  for (Eigen::Index n = 0; n < points.cols(); ++n) {
+    const auto [i, j] = site.tiling.cellAt(points(0, n), points(1, n));
+    if (own.contains(i, j)) points.col(count++) = points.col(n);
+  }
+  return core::clearancesOf(points.leftCols(count), groundOf(site, ground, store, tile).ground);
+}
+
 }  // namespace
 
 void fitGrounds(const Site& site, const SiteRequest& request, const TileStore& store,
@@ -182,13 +231,16 @@ void fitGrounds(const Site& site, const SiteRequest& request, const TileStore& s
     return writer;
   };
   eachTile(site, store, GROUND, advance, fit);
-  // One place proves for the whole site that the land breaks.
-  std::vector<std::size_t> unaware;
-  for (std::size_t t = 0; t < site.tiling.size(); ++t)
-    if (!readGround(store, t).ground.land_breaks) unaware.push_back(t);
-  if (unaware.size() == site.tiling.size()) return;
-  plan.land_breaks = true;
-  for (const std::size_t t : unaware) store.write(store.path(t, GROUND), fit(t));
+  if (request.robust.max_slope) return;  // taken to break everywhere
+  // What breaks is one question for the whole site: tiles that had another answer are fitted again, once.
+  const LandOfSite land = landOfSite(site, store);
+  plan = core::withBreaks(plan, land.breaks);
+  for (const std::uint64_t t : land.contradicted) {
+    const std::size_t tile = static_cast<std::size_t>(t);
+    if (store.has(tile, AGAIN)) continue;
+    store.write(store.path(tile, GROUND), fit(tile));
+    store.write(store.path(tile, AGAIN), ByteWriter());
+  }
 }
 
 SiteGround groundOfSite(const Site& site, const SiteRequest& request, const TileStore& store) {
@@ -207,6 +259,10 @@ SiteGround groundOfSite(const Site& site, const SiteRequest& request, const Tile
   result.tolerances.choices = site.plan.choices;
   core::chooseTolerances(request.robust, site.plan, static_cast<Eigen::Index>(result.observed),
                          result.tolerances);
+  if (request.robust.height_tolerance) return result;
+  core::ClearanceCounts counts;
+  for (std::size_t t = 0; t < site.tiling.size(); ++t) counts.add(clearancesOf(site, result, store, t));
+  core::widenTolerance(request.robust, counts, result.tolerances);
   return result;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "grid/openings.h"
@@ -25,6 +27,18 @@ struct Rim {
   bool broad = false;  ///< holds a square of a fifth of the largest object
 };
 
+/// \param cell side of a cell [largest objects]
+Rim rimOf(const StandingRegion& region, double cell) {
+  const auto rows = static_cast<double>(region.high_row - region.low_row + 1),
+             cols = static_cast<double>(region.high_col - region.low_col + 1);
+  return {std::hypot(rows, cols) * cell,
+          region.area * cell * cell,
+          region.gentle_pairs / std::max(region.ground_pairs, 1.0),
+          region.higher_pairs / std::max(region.pairs, 1.0),
+          region.border * cell,
+          region.broad};
+}
+
 class Rims {
  public:
   Rims(const CellMap& land, const Mask& ground, const RobustPlan& plan)
@@ -43,30 +57,38 @@ class Rims {
 
   /// \param chosen the cells that joined() brought together
   /// \param cores what is broad enough of them
-  Rim of(const Region& region, const Mask& chosen, const Mask& cores) {
+  StandingRegion of(const Region& region, const Mask& chosen, const Mask& cores) {
+    return ofPart(region, chosen, cores, {0, 0, ground_.rows(), ground_.cols()});
+  }
+
+  /// Of those cells of the region that lie in a block of them.
+  StandingRegion ofPart(const Region& region, const Mask& chosen, const Mask& cores, const CellBlock& block) {
     ++number_;
     for (const Eigen::Index cell : region.cells) member_.data()[cell] = number_;
-    Pairs pairs;
-    Rim rim;
+    StandingRegion part;
     for (const Eigen::Index cell : region.cells) {
-      rim.broad = rim.broad || cores.data()[cell];
+      const Eigen::Index i = cell % ground_.rows(), j = cell / ground_.rows();
+      if (i < block.row || j < block.col || i >= block.row + block.rows || j >= block.col + block.cols)
+        continue;
+      include(i, j, part);
+      part.broad = part.broad || cores.data()[cell];
+      if (i == block.row || j == block.col || i + 1 == block.row + block.rows ||
+          j + 1 == block.col + block.cols)
+        part.seam.emplace_back(i, j);
       if (!chosen.data()[cell]) continue;
-      rim.area += 1;
-      rim.border += isAtBorder(cell) ? 1 : 0;
-      lookAround(cell, pairs);
+      part.area += 1;
+      part.border += isAtBorder(cell) ? 1 : 0;
+      lookAround(cell, part);
     }
-    rim.length = region.length * cell_;
-    rim.area *= cell_ * cell_;
-    rim.border *= cell_;
-    rim.gentle = pairs.gentle / std::max(pairs.ground, 1.0);
-    rim.higher = pairs.higher / std::max(pairs.all, 1.0);
-    return rim;
+    return part;
   }
 
  private:
-  struct Pairs {
-    double all = 0, ground = 0, gentle = 0, higher = 0;
-  };
+  static void include(Eigen::Index i, Eigen::Index j, StandingRegion& part) {
+    if (part.high_row < part.low_row) part.low_row = part.high_row = i, part.low_col = part.high_col = j;
+    part.low_row = std::min(part.low_row, i), part.high_row = std::max(part.high_row, i);
+    part.low_col = std::min(part.low_col, j), part.high_col = std::max(part.high_col, j);
+  }
 
   /// On which sides the scan ends with the cells; on others it goes on, in another tile.
   struct Ends {
@@ -90,7 +112,7 @@ class Rims {
            (ends_.high_row && i >= rows - OUTER) || (ends_.high_col && j >= cols - OUTER);
   }
 
-  void lookAround(Eigen::Index cell, Pairs& pairs) const {
+  void lookAround(Eigen::Index cell, StandingRegion& part) const {
     const Eigen::Index rows = ground_.rows(), cols = ground_.cols(), reach = land_.reach();
     const Eigen::Index row = cell % rows, col = cell / rows;
     for (Eigen::Index j = std::max<Eigen::Index>(col - reach, 0); j <= std::min(col + reach, cols - 1); ++j)
@@ -100,12 +122,12 @@ class Rims {
         if (member_.data()[other] == number_ || !land_.isObserved(other)) continue;
         const Eigen::Vector3d offset = land_.point(other) - land_.point(cell);
         const double climb = WAY_IN * offset.head<2>().norm();
-        ++pairs.all;
+        ++part.pairs;
         if (ground_.data()[other]) {
-          ++pairs.ground;
-          if (std::abs(offset.z()) <= climb + 0.25 * least_height_) ++pairs.gentle;
+          ++part.ground_pairs;
+          if (std::abs(offset.z()) <= climb + 0.25 * least_height_) ++part.gentle_pairs;
         } else if (offset.z() > climb + least_height_) {
-          ++pairs.higher;
+          ++part.higher_pairs;
         }
       }
   }
@@ -147,6 +169,28 @@ bool anyLargeRegion(const Mask& cells, double cell) {
   return false;
 }
 
+/// What is known of the regions of one slope by some of their cells.
+class KnownVerdicts {
+ public:
+  KnownVerdicts(const std::vector<BreakVerdict>& verdicts, BreakSlope slope, Eigen::Index rows,
+                Eigen::Index cols) {
+    for (const BreakVerdict& verdict : verdicts)
+      if (verdict.slope == slope && verdict.row >= 0 && verdict.col >= 0 && verdict.row < rows &&
+          verdict.col < cols)
+        by_cell_.emplace(verdict.row + verdict.col * rows, verdict.is_land);
+  }
+
+  std::optional<bool> of(const Region& region) const {
+    if (by_cell_.empty()) return std::nullopt;
+    for (const Eigen::Index cell : region.cells)
+      if (const auto known = by_cell_.find(cell); known != by_cell_.end()) return known->second;
+    return std::nullopt;
+  }
+
+ private:
+  std::unordered_map<Eigen::Index, bool> by_cell_;
+};
+
 }  // namespace
 
 AboveBreaks groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, const Mask& ground,
@@ -155,27 +199,50 @@ AboveBreaks groundAboveBreaks(const CellMap& land, const ElevationGrid& elevatio
   const double largest_object = plan.max_object_size;
   const Mask& observed = elevation.observed;
   const Mask above = observed && !ground, none = Mask::Constant(above.rows(), above.cols(), false);
+  if (!max_slope && plan.land_breaks == false) return {none, false, {}};
   const bool is_known = max_slope || plan.land_breaks;
   if (!is_known && !anyLargeRegion(joined(above, observed), land.cells().cell_size / largest_object))
-    return {none, false};
+    return {none, false, {}};
 
   const Eigen::ArrayXXf steepness =
       steepnessByOpenings(elevation, {largest_object, LEAST_HEIGHT * largest_object});
   Rims rims(land, ground, plan);
-  const auto landUpTo = [&](float slope, bool (*judge)(const Rim&)) {
-    const Mask chosen = above && steepness <= slope;
+  const double cell = land.cells().cell_size / largest_object;
+  std::vector<StandingRegion> standing;
+  const auto landUpTo = [&](float steepest, bool (*judge)(const Rim&), BreakSlope slope) {
+    const Mask chosen = above && steepness <= steepest;
     const Mask filled = joined(chosen, observed);
     const Mask cores = eroded(filled, rims.breadth());
+    const KnownVerdicts known(plan.verdicts, slope, above.rows(), above.cols());
     Mask result = none;
-    for (const Region& region : regionsOf(filled))
-      if (judge(rims.of(region, chosen, cores)))
-        for (const Eigen::Index cell : region.cells) result.data()[cell] = chosen.data()[cell];
+    for (const Region& region : regionsOf(filled)) {
+      const bool is_land = known.of(region).value_or(judge(rimOf(rims.of(region, chosen, cores), cell)));
+      if (is_land)
+        for (const Eigen::Index n : region.cells) result.data()[n] = chosen.data()[n];
+      if (!plan.own || max_slope) continue;
+      StandingRegion part = rims.ofPart(region, chosen, cores, *plan.own);
+      if (part.high_row < part.low_row) continue;
+      part.slope = slope;
+      part.is_land = is_land;
+      standing.push_back(std::move(part));
+    }
     return result;
   };
-  if (max_slope) return {landUpTo(static_cast<float>(*max_slope), isLand), true};
-  const Mask proof = landUpTo(PROOF, provesABreak) || landUpTo(GENTLE, isNoObject);
-  if (!plan.land_breaks && !proof.any()) return {none, false};
-  return {proof || landUpTo(BROKEN, isLand), true};
+  if (max_slope) return {landUpTo(static_cast<float>(*max_slope), isLand, BreakSlope::BROKEN), true, {}};
+  const Mask proof =
+      landUpTo(PROOF, provesABreak, BreakSlope::PROOF) || landUpTo(GENTLE, isNoObject, BreakSlope::GENTLE);
+  const bool breaks = plan.land_breaks || proof.any();
+  // A tile that proves nothing has a say in what is land should another one prove it.
+  if (!breaks && !plan.own) return {none, false, {}};
+  const Mask broken = landUpTo(BROKEN, isLand, BreakSlope::BROKEN);
+  return {breaks ? proof || broken : none, breaks, std::move(standing)};
+}
+
+bool isLand(const StandingRegion& region, double cell) {
+  const Rim rim = rimOf(region, cell);
+  return region.slope == BreakSlope::PROOF    ? provesABreak(rim)
+         : region.slope == BreakSlope::GENTLE ? isNoObject(rim)
+                                              : isLand(rim);
 }
 
 void followGround(const CellMap& land, const Mask& ground, double spread, Eigen::ArrayXXd& surface) {

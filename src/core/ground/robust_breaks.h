@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "ground/robust_cells.h"
 
@@ -8,8 +9,9 @@ namespace pcl_fft_ground::core {
 
 /// Cells above breaks of the land.
 struct AboveBreaks {
-  Mask cells;             ///< of the observed ones; none where the land does not break
-  bool is_known = false;  ///< whether it is known that the land breaks
+  Mask cells;                            ///< of the observed ones; none where the land does not break
+  bool is_known = false;                 ///< whether it is known that the land breaks
+  std::vector<StandingRegion> standing;  ///< what of the plan's own cells has a say in that
 };
 
 /** Ground above breaks of the land, which a band-limited surface has lost.
@@ -25,6 +27,10 @@ struct AboveBreaks {
  */
 AboveBreaks groundAboveBreaks(const CellMap& land, const ElevationGrid& elevation, const Mask& ground,
                               const RobustPlan& plan, const std::optional<double>& max_slope);
+
+/// Whether a whole region is land; of those of PROOF and GENTLE that proves that the land breaks.
+/// \param cell side of a cell [largest objects]
+bool isLand(const StandingRegion& region, double cell);
 
 /** Lets a surface follow the ground where that bends more sharply than its wavelengths can: at a ground cell
  * farther than three spreads from the surface the cell's own height takes its place.

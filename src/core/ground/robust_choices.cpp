@@ -53,34 +53,6 @@ double pointSpacing(double cell_size, Eigen::Index observed, Eigen::Index points
   return cell_size * std::min(1.0, std::sqrt(static_cast<double>(observed) / static_cast<double>(points)));
 }
 
-/// How many points lie in each of equal steps above the ground, and below it; what lies further below is in
-/// the last step.
-struct ClearanceCounts {
-  static constexpr std::size_t STEPS = 256;
-  std::array<std::size_t, STEPS> above{}, below{};
-};
-
-ClearanceCounts clearancesOf(const PointsView& points, const RobustGround& ground) {
-  ClearanceCounts counts;
-  const Clearance clearance(ground, points);
-  const auto per_metre = static_cast<float>(ClearanceCounts::STEPS / ground.most_tolerance);
-  const auto deepest = static_cast<float>(ground.depth_tolerance);
-  const auto count = [&](float distance, std::array<std::size_t, ClearanceCounts::STEPS>& steps) {
-    if (distance <= 0) return;
-    const float step = std::min(distance * per_metre, static_cast<float>(ClearanceCounts::STEPS));
-    ++steps[std::min(static_cast<std::size_t>(step), ClearanceCounts::STEPS - 1)];
-  };
-  Clearance::Block block;
-  for (std::size_t begin = 0; begin < static_cast<std::size_t>(points.cols()); begin += block.count) {
-    clearance.read(points, begin, block);
-    for (std::size_t n = 0; n < block.count; ++n) {
-      if (block.above[n] * per_metre < ClearanceCounts::STEPS) count(block.above[n], counts.above);
-      if (block.below[n] <= deepest) count(block.below[n], counts.below);
-    }
-  }
-  return counts;
-}
-
 /// The height from which to call points objects with the least expected harm, in steps, by what lies below.
 std::size_t leastHarm(const ClearanceCounts& counts) {
   constexpr long FALSE_OBJECT = 2;  // as bad as so many objects called ground
@@ -147,10 +119,37 @@ void chooseTolerances(const RobustParameters& parameters, const RobustPlan& plan
   ground.depth_tolerance = std::max(USUAL_DEPTH * ground.max_object_size, DEPTH_SCALES * ground.scale);
 }
 
-void widenTolerance(const RobustParameters& parameters, const PointsView& points, RobustGround& ground) {
+void ClearanceCounts::add(const ClearanceCounts& part) {
+  for (std::size_t step = 0; step < STEPS; ++step)
+    above[step] += part.above[step], below[step] += part.below[step];
+}
+
+ClearanceCounts clearancesOf(const PointsView& points, const RobustGround& ground) {
+  ClearanceCounts counts;
+  if (!(ground.most_tolerance > 0) || ground.surface.height.size() == 0) return counts;
+  const Clearance clearance(ground, points);
+  const auto per_metre = static_cast<float>(ClearanceCounts::STEPS / ground.most_tolerance);
+  const auto deepest = static_cast<float>(ground.depth_tolerance);
+  const auto count = [&](float distance, std::array<std::uint64_t, ClearanceCounts::STEPS>& steps) {
+    if (distance <= 0) return;
+    const float step = std::min(distance * per_metre, static_cast<float>(ClearanceCounts::STEPS));
+    ++steps[std::min(static_cast<std::size_t>(step), ClearanceCounts::STEPS - 1)];
+  };
+  Clearance::Block block;
+  for (std::size_t begin = 0; begin < static_cast<std::size_t>(points.cols()); begin += block.count) {
+    clearance.read(points, begin, block);
+    for (std::size_t n = 0; n < block.count; ++n) {
+      if (block.above[n] * per_metre < ClearanceCounts::STEPS) count(block.above[n], counts.above);
+      if (block.below[n] <= deepest) count(block.below[n], counts.below);
+    }
+  }
+  return counts;
+}
+
+void widenTolerance(const RobustParameters& parameters, const ClearanceCounts& counts, RobustGround& ground) {
   if (parameters.height_tolerance || !(ground.most_tolerance > 0)) return;
-  const double wider = ground.most_tolerance * static_cast<double>(leastHarm(clearancesOf(points, ground))) /
-                       ClearanceCounts::STEPS;
+  const double wider =
+      ground.most_tolerance * static_cast<double>(leastHarm(counts)) / ClearanceCounts::STEPS;
   if (wider <= ground.tolerance) return;
   ground.tolerance = wider;
   RobustChoice& choice =

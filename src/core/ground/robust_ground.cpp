@@ -52,7 +52,7 @@ Mask cellsAtSurface(const RobustSurface& surface, const GridGeometry& cells, dou
 /// The ground that the surface has not reached, and the surface through it.
 /// \return all ground cells; none if the surface has reached them all
 Mask completeGround(RobustSurface& surface, const RobustPlan& plan, const ElevationGrid& elevation,
-                    const std::optional<double>& max_slope, bool& land_breaks) {
+                    const std::optional<double>& max_slope, RobustGround& result) {
   constexpr int ROUNDS = 2;
   constexpr double ABOVE = 3, BELOW = 8;  // scales: outliers below would wreck the fit
   constexpr double LEAST_HEIGHT = 0.01;
@@ -75,8 +75,9 @@ Mask completeGround(RobustSurface& surface, const RobustPlan& plan, const Elevat
                                      std::max(surface.spread().centre + ABOVE * surface.spread().scale,
                                               LEAST_HEIGHT * size)) ||
                       gained;
-  const AboveBreaks breaks = groundAboveBreaks(land, elevation, ground, plan, max_slope);
-  land_breaks = breaks.is_known;
+  AboveBreaks breaks = groundAboveBreaks(land, elevation, ground, plan, max_slope);
+  result.land_breaks = breaks.is_known;
+  result.standing = std::move(breaks.standing);
   const Mask& above = breaks.cells;
   if (!above.any()) return gained.any() ? band(BELOW, 0) || gained : gained;
   surface.refit(pointsIn(ground || above, surface.points()));
@@ -120,8 +121,7 @@ RobustGround fitSample(const Points& sample, Eigen::Index total, const Eigen::Is
   ground.wavelengths =
       growFromBelow(surface, std::max(plan.max_object_size, plan.finest_wavelength), plan.finest_wavelength);
   const CellPoints lowest = surface.points();
-  const Mask completed =
-      completeGround(surface, plan, ground.elevation, parameters.max_slope, ground.land_breaks);
+  const Mask completed = completeGround(surface, plan, ground.elevation, parameters.max_slope, ground);
   const GroundPoints found = fitGroundPoints(surface, sorted, USUAL_TOLERANCE * plan.max_object_size);
   ground.scale = found.spread;
   describeSurface(surface, plan, ground);
@@ -150,7 +150,7 @@ RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometr
   const Points sample = plannedSample(points, plan);
   RobustGround ground = fitSample(sample, points.cols(), frame_from_input, plan, parameters);
   chooseTolerances(parameters, plan, ground.elevation.observed.count(), ground);
-  widenTolerance(parameters, sample, ground);
+  if (!parameters.height_tolerance) widenTolerance(parameters, clearancesOf(sample, ground), ground);
   return ground;
 }
 

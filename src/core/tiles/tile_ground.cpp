@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
 #include <utility>
+
+#include "ground/robust_breaks.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -127,7 +132,79 @@ void takeOwn(const TileGround& tile, const CellWindow& own, TileGround& result) 
   copy(result.ground.steps, tile.ground.steps);
 }
 
+void moveBy(Eigen::Index rows, Eigen::Index cols, StandingRegion& region) {
+  region.low_row += rows, region.high_row += rows, region.low_col += cols, region.high_col += cols;
+  for (auto& [row, col] : region.seam) row += rows, col += cols;
+}
+
+void add(const StandingRegion& part, StandingRegion& whole) {
+  whole.low_row = std::min(whole.low_row, part.low_row),
+  whole.low_col = std::min(whole.low_col, part.low_col);
+  whole.high_row = std::max(whole.high_row, part.high_row);
+  whole.high_col = std::max(whole.high_col, part.high_col);
+  whole.area += part.area, whole.border += part.border, whole.pairs += part.pairs;
+  whole.ground_pairs += part.ground_pairs, whole.gentle_pairs += part.gentle_pairs;
+  whole.higher_pairs += part.higher_pairs;
+  whole.broad = whole.broad || part.broad;
+}
+
+/// The first of the parts that are one with a part, each part knowing one before it.
+std::size_t firstOf(std::vector<std::size_t>& before, std::size_t part) {
+  while (before[part] != part) part = before[part] = before[before[part]];
+  return part;
+}
+
+/// Which parts of regions touch over a seam: for each the first of those that are one with it.
+std::vector<std::size_t> joinedParts(const std::vector<StandingRegion>& parts) {
+  std::vector<std::size_t> before(parts.size());
+  std::iota(before.begin(), before.end(), std::size_t{0});
+  std::map<std::tuple<BreakSlope, Eigen::Index, Eigen::Index>, std::size_t> at;
+  for (std::size_t n = 0; n < parts.size(); ++n)
+    for (const auto& [row, col] : parts[n].seam) {
+      for (Eigen::Index j = col - 1; j <= col + 1; ++j)
+        for (Eigen::Index i = row - 1; i <= row + 1; ++i) {
+          const auto other = at.find({parts[n].slope, i, j});
+          if (other == at.end()) continue;
+          const std::size_t a = firstOf(before, n), b = firstOf(before, other->second);
+          before[std::max(a, b)] = std::min(a, b);
+        }
+      at.emplace(std::make_tuple(parts[n].slope, row, col), n);
+    }
+  for (std::size_t n = 0; n < parts.size(); ++n) before[n] = firstOf(before, n);
+  return before;
+}
+
 }  // namespace
+
+SiteBreaks breaksOf(const RobustPlan& plan, const std::vector<StandingRegion>& standing) {
+  const std::vector<std::size_t> first = joinedParts(standing);
+  std::vector<StandingRegion> wholes = standing;
+  for (std::size_t n = 0; n < standing.size(); ++n)
+    if (first[n] != n) add(standing[n], wholes[first[n]]);
+  SiteBreaks breaks;
+  for (std::size_t n = 0; n < standing.size(); ++n) {
+    const bool is_land = isLand(wholes[first[n]], plan.cells.cell_size / plan.max_object_size);
+    if (is_land && standing[n].slope != BreakSlope::BROKEN) breaks.land_breaks = true;
+    if (is_land != standing[n].is_land && !standing[n].seam.empty())
+      breaks.verdicts.push_back(
+          {standing[n].slope, standing[n].seam.front().first, standing[n].seam.front().second, is_land});
+  }
+  return breaks;
+}
+
+bool contradicts(const TileGround& tile, const SiteBreaks& breaks, const Tiling& tiling, std::size_t number) {
+  if (tile.ground.land_breaks != breaks.land_breaks) return true;
+  const CellWindow seen = tiling.grown(tiling.core(number), blendWidth(tiling) + RING);
+  return breaks.land_breaks &&
+         std::any_of(breaks.verdicts.begin(), breaks.verdicts.end(),
+                     [&](const BreakVerdict& verdict) { return seen.contains(verdict.row, verdict.col); });
+}
+
+RobustPlan withBreaks(RobustPlan plan, const SiteBreaks& breaks) {
+  plan.land_breaks = breaks.land_breaks;
+  plan.verdicts = breaks.verdicts;
+  return plan;
+}
 
 Tiling tilingOf(const RobustPlan& plan, double tile_size) {
   return {plan.cells, tile_size, TILE_MARGIN * std::max(plan.max_object_size, plan.finest_wavelength)};
@@ -139,11 +216,15 @@ TileGround fitTile(const PointsView& points, const Eigen::Isometry3d& frame_from
   const CellWindow seen = tiling.seen(tile);
   RobustPlan of_tile = plan;
   of_tile.cells = tiling.geometryOf(seen);
+  for (BreakVerdict& verdict : of_tile.verdicts) verdict.row -= seen.row, verdict.col -= seen.col;
+  const CellWindow core = tiling.core(tile);
+  of_tile.own = CellBlock{core.row - seen.row, core.col - seen.col, core.rows, core.cols};
   TileGround result{tiling.grown(tiling.core(tile), blendWidth(tiling) + RING), {}};
   result.ground = points.cols() > 0 ? fitRobustGround(points, frame_from_input, of_tile, parameters)
                                     : emptyGround(of_tile.cells);
   result.ground.surface.frame_from_input = frame_from_input;
-  result.ground.land_breaks = result.ground.land_breaks || plan.land_breaks;
+  result.ground.land_breaks = plan.land_breaks.value_or(result.ground.land_breaks);
+  for (StandingRegion& region : result.ground.standing) moveBy(seen.row, seen.col, region);
   crop(result.ground, seen, result.window, tiling.geometryOf(result.window));
   return result;
 }

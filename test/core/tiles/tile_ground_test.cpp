@@ -54,23 +54,35 @@ Labels labelsByTiles(const Site& site, double tile_size) {
                    site.parameters, tiling, t);
   };
   for (std::size_t t = 0; t < tiling.size(); ++t) tiles.push_back(fit(t));
-  for (const TileGround& tile : tiles) plan.land_breaks = plan.land_breaks || tile.ground.land_breaks;
+  std::vector<StandingRegion> standing;
+  for (const TileGround& tile : tiles)
+    standing.insert(standing.end(), tile.ground.standing.begin(), tile.ground.standing.end());
+  const SiteBreaks breaks = breaksOf(plan, standing);
+  plan = withBreaks(plan, breaks);
   for (std::size_t t = 0; t < tiling.size(); ++t) {
-    if (plan.land_breaks && !tiles[t].ground.land_breaks) tiles[t] = fit(t);
+    if (contradicts(tiles[t], breaks, tiling, t)) tiles[t] = fit(t);
     spreads.push_back(spreadOf(tiles[t], tiling.core(t)));
     observed += spreads.back().observed;
   }
-  Labels labels(static_cast<std::size_t>(points.cols()), Label::NEITHER);
-  for (std::size_t t = 0; t < tiling.size(); ++t) {
+  const auto groundOf = [&](std::size_t t) {
     std::vector<TileGround> blended;
     for (const std::size_t other : blendedTiles(tiling, t)) blended.push_back(tiles[other]);
-    TileGround ground = blendedGround(tiling, t, blended);
-    ground.ground.scale = siteSpread(spreads);
-    ground.ground.max_object_size = plan.max_object_size;
-    chooseTolerances(site.parameters, plan, observed, ground.ground);
+    RobustGround ground = blendedGround(tiling, t, blended).ground;
+    ground.scale = siteSpread(spreads);
+    ground.max_object_size = plan.max_object_size;
+    chooseTolerances(site.parameters, plan, observed, ground);
+    return ground;
+  };
+  ClearanceCounts counts;
+  for (std::size_t t = 0; t < tiling.size(); ++t)
+    counts.add(clearancesOf(pointsIn(plannedSample(points, plan), tiling, tiling.core(t)), groundOf(t)));
+  Labels labels(static_cast<std::size_t>(points.cols()), Label::NEITHER);
+  for (std::size_t t = 0; t < tiling.size(); ++t) {
+    RobustGround ground = groundOf(t);
+    widenTolerance(site.parameters, counts, ground);
     std::vector<std::size_t> columns;
     const Points own = pointsIn(points, tiling, tiling.core(t), &columns);
-    const RobustLabels found = labelRobust(own, ground.ground);
+    const RobustLabels found = labelRobust(own, ground);
     for (std::size_t n = 0; n < columns.size(); ++n) labels[columns[n]] = found.labels[n];
   }
   return labels;
@@ -83,7 +95,7 @@ double agreement(const Labels& a, const Labels& b) {
 }
 
 class TileGroundOfSeeds : public testing::TestWithParam<std::uint32_t> {};
-INSTANTIATE_TEST_SUITE_P(Seeds, TileGroundOfSeeds, testing::Values(2, 3));
+INSTANTIATE_TEST_SUITE_P(Seeds, TileGroundOfSeeds, testing::Values(1, 2, 3));
 
 TEST_P(TileGroundOfSeeds, LabelsAgreeWithThoseOfTheWholeSite) {
   SCOPED_TRACE(GetParam());
@@ -92,9 +104,7 @@ TEST_P(TileGroundOfSeeds, LabelsAgreeWithThoseOfTheWholeSite) {
   const Labels expected = labelRobust(site.points(), whole).labels;
   const Labels labels = labelsByTiles(site, 4.5);
   EXPECT_EQ(std::count(labels.begin(), labels.end(), Label::NEITHER), 0);
-  // Tiles of 4.5 objects and 2,000 points a square metre. Of seed 1 one tile proves that the land breaks and
-  // the whole does not: 0.995.
-  EXPECT_GE(agreement(expected, labels), 0.999);
+  EXPECT_GE(agreement(expected, labels), 0.9993);  // tiles of 4.5 objects: .99943, .99998 and more
 }
 
 TEST(Tiling, TilesHoldEveryCellOnceAndAreOfOneSize) {

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pcl_fft_ground/core/export.h"
@@ -41,6 +44,37 @@ struct RobustChoice {
   std::string reason;     ///< a short sentence
 };
 
+/// How steep the land may be that regions of cells standing out of the ground are gathered from.
+enum class BreakSlope : unsigned char {
+  PROOF,   ///< of which some prove that the land breaks
+  GENTLE,  ///< of which the large ones are no objects
+  BROKEN,  ///< of which some are land, where the land is known to break
+};
+
+/// Whether the region that holds a cell is land, as it is known of the whole of it.
+struct BreakVerdict {
+  BreakSlope slope = BreakSlope::PROOF;
+  Eigen::Index row = 0, col = 0;  ///< of the cell
+  bool is_land = false;
+};
+
+/// A region of cells that stand out of the ground, or the part of it in a tile, as it is judged: whether it
+/// is an object or land above a break. Sums of parts are those of the whole region.
+struct StandingRegion {
+  BreakSlope slope = BreakSlope::PROOF;
+  bool is_land = false;                                                 ///< by what is seen of it here
+  Eigen::Index low_row = 0, low_col = 0, high_row = -1, high_col = -1;  ///< of its cells
+  double area = 0;                                                      ///< [cells]
+  double border = 0;                                                    ///< of these at the scan's border
+  double pairs = 0;         ///< of a cell and an observed one beside it that is not of the region
+  double ground_pairs = 0;  ///< of these with ground
+  double gentle_pairs = 0;  ///< of these that climb gently
+  double higher_pairs = 0;  ///< whose other cell, no ground, stands out of the region
+  bool broad = false;       ///< holds a square of a fifth of the largest object
+  std::vector<std::pair<Eigen::Index, Eigen::Index>>
+      seam;  ///< rows and columns of its cells at the tile's edge
+};
+
 /// The ground of a scan, how sure it is, and what led to it.
 struct RobustGround {
   ElevationGrid elevation;     ///< height of each cell by the statistic
@@ -60,6 +94,7 @@ struct RobustGround {
   std::vector<double> wavelengths;    ///< all scales, coarse to fine [m]
   std::vector<RobustChoice> choices;  ///< of the values that were not set
   bool land_breaks = false;  ///< whether it is known that the land breaks: proven here or by the plan
+  std::vector<StandingRegion> standing;  ///< in the plan's own cells, where it has some: evidence of breaks
 };
 
 /** The ground of a level scan as a band-limited surface fitted to the ground cells only, coarse to fine:
@@ -82,6 +117,11 @@ PCL_FFT_GROUND_CORE_EXPORT RobustGround estimateRobustGround(const PointsView& l
                                                              const Eigen::Isometry3d& frame_from_input,
                                                              const RobustParameters& parameters);
 
+/// A block of cells of a grid.
+struct CellBlock {
+  Eigen::Index row = 0, col = 0, rows = 0, cols = 0;
+};
+
 /// What must be the same wherever the ground of a scan is fitted, in one piece or tile by tile: all values
 /// given or chosen from the whole scan.
 struct RobustPlan {
@@ -91,11 +131,13 @@ struct RobustPlan {
   double max_object_size = 0;  ///< [m]
   GridGeometry cells;  ///< the elevation cells: of the scan or, for a tile, those of them that it fits
   CellStatistic statistic = CellStatistic::LOWEST;
-  double finest_wavelength = 0;       ///< [m]
-  double slope = 0;                   ///< of the scale's floor: threshold as a share of the wavelength [m/m]
-  Eigen::Index sample = 0;            ///< about as many points of the whole scan are looked at
-  std::vector<RobustChoice> choices;  ///< of the values that were not set
-  bool land_breaks = false;  ///< whether it is known, from another part of the scan, that the land breaks
+  double finest_wavelength = 0;        ///< [m]
+  double slope = 0;                    ///< of the scale's floor: threshold as a share of the wavelength [m/m]
+  Eigen::Index sample = 0;             ///< about as many points of the whole scan are looked at
+  std::vector<RobustChoice> choices;   ///< of the values that were not set
+  std::optional<bool> land_breaks;     ///< whether the land breaks, where that is known from the whole scan
+  std::optional<CellBlock> own;        ///< of a tile: the cells that are no other tile's
+  std::vector<BreakVerdict> verdicts;  ///< of regions that are not seen whole, in the cells of the plan
 };
 
 /** Chooses what is not set from the bounds and the number of the points of a whole scan.
@@ -122,6 +164,31 @@ PCL_FFT_GROUND_CORE_EXPORT Points plannedSample(const PointsView& level_points, 
  */
 PCL_FFT_GROUND_CORE_EXPORT void chooseTolerances(const RobustParameters& parameters, const RobustPlan& plan,
                                                  Eigen::Index observed, RobustGround& ground);
+
+/// How many points lie in each of equal steps above the ground, the greatest tolerance being all of them, and
+/// below it; what lies further below is in the last step.
+struct ClearanceCounts {
+  static constexpr std::size_t STEPS = 256;
+  std::array<std::uint64_t, STEPS> above{}, below{};
+
+  PCL_FFT_GROUND_CORE_EXPORT void add(const ClearanceCounts& part);
+};
+
+/// \param level_points of which to judge
+/// \param ground tolerances chosen, all else known
+PCL_FFT_GROUND_CORE_EXPORT ClearanceCounts clearancesOf(const PointsView& level_points,
+                                                        const RobustGround& ground);
+
+/** Raises the tolerance where the points say so, up to the greatest one.
+ *
+ * Ground is as likely to lie above its surface as below it. Hence the points below a depth d are as many as
+ * the ground that a tolerance d calls objects, and the points above, up to d, less those below, are objects
+ * that it calls ground. The least sum is taken, the ground's share counted twice.
+ *
+ * \param counts of the whole scan
+ */
+PCL_FFT_GROUND_CORE_EXPORT void widenTolerance(const RobustParameters& parameters,
+                                               const ClearanceCounts& counts, RobustGround& ground);
 
 /// Labels of points, those below the ground counted apart.
 struct RobustLabels {

@@ -21,18 +21,40 @@ PCL_FFT_GROUND_CORE_EXPORT Tiling tilingOf(const RobustPlan& plan, double tile_s
 /// The ground of a tile and around it.
 struct TileGround {
   CellWindow window;    ///< of the site: the cells of `ground`
-  RobustGround ground;  ///< its tolerances are not chosen
+  RobustGround ground;  ///< its tolerances are not chosen; `standing` is told in cells of the site
 };
 
 /** Fits the ground of a tile; of the margin only as much is kept as its neighbours need.
  * \param level_points points in what is seen of the tile, or plannedSample() of them; where there are none,
  *        the ground has empty cells only
- * \param plan of the whole site
+ * \param plan of the whole site, verdicts in its cells
  */
 PCL_FFT_GROUND_CORE_EXPORT TileGround fitTile(const PointsView& level_points,
                                               const Eigen::Isometry3d& frame_from_input,
                                               const RobustPlan& plan, const RobustParameters& parameters,
                                               const Tiling& tiling, std::size_t tile);
+
+/// What is known of the breaks of a site's land once all tiles have been looked at.
+struct SiteBreaks {
+  bool land_breaks = false;
+  std::vector<BreakVerdict>
+      verdicts;  ///< in cells of the site: of a part of a region that its tile misjudged
+};
+
+/** Judges what stands out of the ground of all tiles: a region that goes over seams is one, and judged as the
+ * whole that it is.
+ * \param plan of the whole site
+ * \param standing of fitTile(), by which nothing was known of breaks; of all tiles
+ */
+PCL_FFT_GROUND_CORE_EXPORT SiteBreaks breaksOf(const RobustPlan& plan,
+                                               const std::vector<StandingRegion>& standing);
+
+/// Whether a tile must be fitted again: it had another answer than the site. \param tile fitted before
+PCL_FFT_GROUND_CORE_EXPORT bool contradicts(const TileGround& tile, const SiteBreaks& breaks,
+                                            const Tiling& tiling, std::size_t number);
+
+/// The plan for that. \param plan of the whole site
+PCL_FFT_GROUND_CORE_EXPORT RobustPlan withBreaks(RobustPlan plan, const SiteBreaks& breaks);
 
 /// The tiles whose ground is blended in a tile, itself among them, ascending.
 PCL_FFT_GROUND_CORE_EXPORT std::vector<std::size_t> blendedTiles(const Tiling& tiling, std::size_t tile);
