@@ -1,9 +1,13 @@
 #include <pcl/conversions.h>
 #include <pcl/io/ply_io.h>
 
+#include <filesystem>
+#include <map>
 #include <random>
 
 #include "cloud_file_fixture.h"
+#include "command_fixture.h"
+#include "commands/commands.h"
 #include "las_bytes.h"
 
 namespace pcl_fft_ground::cli {
@@ -106,6 +110,56 @@ TEST_P(DamagedCloudFile, PiecesDoubledAndRemoved) {
     damaged.erase(random() % damaged.size(), random() % 5);
     readsOrRefuses(damaged);
   }
+}
+
+/// What a number in a header may be made.
+const std::vector<std::string> EXTREMES{
+    "0",   "-1", "1", "4294967295", "4294967296", "9223372036854775807", "18446744073709551616", "1e300",
+    "nan", "x",  ""};
+
+TEST_P(DamagedCloudFile, NumbersOfTheHeaderAtTheirExtremes) {
+  const std::string content = validFile();
+  if (GetParam() == "points.las") {
+    for (std::size_t place = 24; place < 227; ++place)
+      for (const std::size_t bytes : {1U, 2U, 4U, 8U})
+        for (const char byte : {'\0', '\x7f', '\xff'}) {
+          std::string changed = content;
+          changed.replace(place, bytes, bytes, byte);
+          readsOrRefuses(changed);
+        }
+    return;
+  }
+  const std::size_t end = std::min<std::size_t>(content.size(), 500);
+  for (std::size_t begin = 0; begin < end; ++begin) {
+    const auto isDigit = [&](std::size_t i) { return i < end && content[i] >= '0' && content[i] <= '9'; };
+    if (!isDigit(begin) || (begin > 0 && isDigit(begin - 1))) continue;
+    std::size_t count = 1;
+    while (isDigit(begin + count)) ++count;
+    for (const std::string& number : EXTREMES) {
+      SCOPED_TRACE(std::to_string(begin) + ": " + number);
+      std::string changed = content;
+      readsOrRefuses(changed.replace(begin, count, number));
+    }
+  }
+}
+
+TEST_P(DamagedCloudFile, NothingIsWrittenOfAFileCutAtAny32nd) {
+  const std::string content = validFile();
+  std::size_t refused = 0;
+  for (std::size_t n = 0; n < 32; ++n) {
+    SCOPED_TRACE(n);
+    const std::string cut = content.substr(0, content.size() * n / 32);
+    if (readsOrRefuses(cut)) continue;  // as text it is whole
+    ++refused;
+    const std::string path = makeFile(GetParam(), cut);
+    EXPECT_THROW(run(runSegment, {path, "-o", pathOf("out"), "--max-object-size", "1"}), WorkError);
+    EXPECT_FALSE(std::filesystem::exists(pathOf("out")));
+  }
+  // Text cut between two lines is whole, and so are floats between two points; PLY has a camera behind its
+  // points.
+  const std::map<std::string, std::size_t> least{
+      {"text.csv", 4}, {"floats.bin", 24}, {"ascii.ply", 28}, {"binary.ply", 28}};
+  EXPECT_GE(refused, least.count(GetParam()) != 0 ? least.at(GetParam()) : 31);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryKind, DamagedCloudFile,

@@ -1,5 +1,7 @@
 // ground_surface.tif, read back by GDAL; without it the options are refused.
 
+#include <cstdio>
+
 #include "errors.h"
 #include "io/raster_files.h"
 #include "las_bytes.h"
@@ -112,6 +114,45 @@ TEST_F(GeoTiff, IsTheSurfaceInTheCoordinatesOfTheFile) {
   EXPECT_EQ(coarse.place[1], 0.5);
   EXPECT_NEAR(coarse.dataset->GetRasterXSize(), 20, 1);
   EXPECT_EQ(coarse.dataset->GetSpatialRef(), nullptr);
+}
+
+/// What a command prints; nothing where it fails.
+std::string printedBy(const std::string& command) {
+  std::string text;
+  FILE* const pipe = popen((command + " 2>/dev/null").c_str(), "r");
+  for (int c = 0; pipe != nullptr && (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  return pipe != nullptr && pclose(pipe) == 0 ? text : "";
+}
+
+TEST_F(GeoTiff, GdalsOwnToolsTellTheSameOfEveryCell) {
+  if (printedBy("gdalinfo --version && gdal_translate --version").empty())
+    GTEST_SKIP() << "gdalinfo and gdal_translate (gdal-bin) are missing";
+  run(runSegment, {makeScan(), "-o", output(), "--max-object-size", "1", "--crs", "EPSG:32633"});
+  const Eigen::ArrayXXd ascii = asciiHeights(contentOf(outputOf("ground_surface.asc")));
+  const std::string tif = "'" + outputOf("ground_surface.tif") + "'";
+  const json info = json::parse(printedBy("gdalinfo -json " + tif));
+  EXPECT_EQ(info["size"], json({ascii.rows(), ascii.cols()}));
+  EXPECT_NE(info["coordinateSystem"]["wkt"].get<std::string>().find("32633"), std::string::npos);
+  ASSERT_EQ(info["bands"].size(), 3U);
+  for (const std::size_t band : {0U, 1U, 2U})
+    EXPECT_EQ(info["bands"][band]["description"], (Words{"height", "uncertainty", "supported"}[band]));
+  EXPECT_EQ(info["bands"][0]["noDataValue"], -9999.0);
+  std::istringstream cells(printedBy("gdal_translate -q -b 1 -of XYZ " + tif + " /vsistdout/"));
+  std::size_t known = 0;
+  const auto place = info["geoTransform"].get<std::vector<double>>();
+  for (Eigen::Index j = ascii.cols() - 1; j >= 0; --j)  // from the north
+    for (Eigen::Index i = 0; i < ascii.rows(); ++i) {
+      double x = 0, y = 0, z = 0;
+      ASSERT_TRUE(cells >> x >> y >> z);
+      EXPECT_NEAR(x, place[0] + place[1] * (static_cast<double>(i) + 0.5), 1e-6);
+      EXPECT_NEAR(y, place[3] + place[5] * (static_cast<double>(ascii.cols() - j) - 0.5), 1e-6);
+      if (z == -9999) continue;
+      ++known;
+      EXPECT_NEAR(z, ascii(i, j), 1e-3) << i << " " << j;
+    }
+  EXPECT_GT(known, static_cast<std::size_t>(ascii.size()) / 2);
+  double more = 0;
+  EXPECT_FALSE(cells >> more);
 }
 
 TEST_F(GeoTiff, OptionsThatMakeNoRasterAreRefused) {
