@@ -1,7 +1,6 @@
 #include "pcl_fft_ground/core/ground/ground_warnings.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -10,7 +9,6 @@
 
 #include "grid/distances.h"
 #include "pcl_fft_ground/core/scan/threads.h"
-#include "scan/point_block.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -107,22 +105,14 @@ GroundSeen groundSeen(const PointsView& points, const Labels& labels, const Grid
   const auto counts =
       resultsOfRanges(points.cols(), POINTS_AT_A_TIME, [&](Eigen::Index begin, Eigen::Index end) {
         Eigen::Index count = 0;
-        PointBlock block;
-        std::array<std::int32_t, PointBlock::SIZE> cell;
-        const PointsView part = points.leftCols(end);
-        for (auto first = static_cast<std::size_t>(begin); first < static_cast<std::size_t>(end);
-             first += block.count) {
-          block.read(part, first);
-          for (std::size_t n = 0; n < block.count; ++n) {
-            const auto i = static_cast<std::int32_t>((static_cast<double>(block.x[n]) - x) * per_metre);
-            const auto j = static_cast<std::int32_t>((static_cast<double>(block.y[n]) - y) * per_metre);
-            cell[n] = std::min(std::max(i, 0), rows - 1) + std::min(std::max(j, 0), cols - 1) * rows;
-          }
-          for (std::size_t n = 0; n < block.count; ++n) {
-            if (labels[first + n] != Label::GROUND) continue;
-            ++count;
-            seen[static_cast<std::size_t>(cell[n])].store(true, std::memory_order_relaxed);
-          }
+        for (Eigen::Index n = begin; n < end; ++n) {
+          if (labels[static_cast<std::size_t>(n)] != Label::GROUND) continue;
+          ++count;
+          const float* p = points.data() + 3 * n;
+          const auto i = static_cast<std::int32_t>((static_cast<double>(p[0]) - x) * per_metre);
+          const auto j = static_cast<std::int32_t>((static_cast<double>(p[1]) - y) * per_metre);
+          const std::int32_t cell = std::clamp(i, 0, rows - 1) + std::clamp(j, 0, cols - 1) * rows;
+          seen[static_cast<std::size_t>(cell)].store(true, std::memory_order_relaxed);
         }
         return count;
       });

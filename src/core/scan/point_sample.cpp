@@ -12,40 +12,27 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-/// Bits of the coordinates of some consecutive points, spread over 32: several points at once.
-struct HashBlock {
-  static constexpr std::size_t SIZE = 512;
-  std::array<std::uint32_t, SIZE> hashes;
-
-  void read(const float* points, std::size_t count) {
-    std::array<std::uint32_t, 3 * SIZE> bits;
-    std::memcpy(bits.data(), points, 3 * count * sizeof(float));
-    std::array<std::uint32_t, SIZE> y, z;
-    for (std::size_t n = 0; n < count; ++n)
-      hashes[n] = bits[3 * n], y[n] = bits[3 * n + 1], z[n] = bits[3 * n + 2];
-    for (std::size_t n = 0; n < count; ++n) {
-      std::uint32_t hash = hashes[n] * 0x9e3779b1U ^ y[n] * 0x85ebca6bU ^ z[n] * 0xc2b2ae35U;
-      hash ^= hash >> 15;
-      hash *= 0x2c1b3c6dU;
-      hashes[n] = hash ^ (hash >> 13);
-    }
-  }
-};
+/// Spreads the bits of the coordinates over 32.
+std::uint32_t hashOf(const float* coordinates) {
+  std::uint32_t bits[3];
+  std::memcpy(bits, coordinates, sizeof bits);
+  std::uint32_t hash = bits[0] * 0x9e3779b1U ^ bits[1] * 0x85ebca6bU ^ bits[2] * 0xc2b2ae35U;
+  hash ^= hash >> 15;
+  hash *= 0x2c1b3c6dU;
+  return hash ^ (hash >> 13);
+}
 
 /// The points of a part whose hash lies below the threshold.
 Points chosenOf(const PointsView& points, Eigen::Index begin, Eigen::Index end, std::uint32_t threshold) {
-  HashBlock block;
-  std::array<const float*, HashBlock::SIZE> chosen;
+  std::array<const float*, 512> chosen;
   Points sample(3, end - begin);
   float* to = sample.data();
-  const float* const last = points.data() + 3 * end;
-  for (const float* p = points.data() + 3 * begin; p < last;) {
-    const std::size_t size = std::min(HashBlock::SIZE, static_cast<std::size_t>(last - p) / 3);
-    block.read(p, size);
+  for (const float *p = points.data() + 3 * begin, *const last = points.data() + 3 * end; p < last;) {
+    const float* const block_end = std::min(p + 3 * chosen.size(), last);
     std::size_t count = 0;
-    for (std::size_t n = 0; n < size; ++n, p += 3) {
+    for (; p < block_end; p += 3) {
       chosen[count] = p;  // half of all branches would be mispredicted
-      count += block.hashes[n] < threshold ? 1 : 0;
+      count += hashOf(p) < threshold ? 1 : 0;
     }
     for (std::size_t k = 0; k < count; ++k, to += 3) std::copy_n(chosen[k], 3, to);
   }
