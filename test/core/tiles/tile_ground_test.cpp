@@ -153,6 +153,31 @@ TEST(BlendedGround, IsThatOfTheTilesWhereTheyAgree) {
   }
 }
 
+TEST(SiteBreaks, ARegionOverASeamIsJudgedAsOne) {
+  RobustPlan plan;
+  plan.cells = {{0, 0}, 0.1, 40, 40};
+  plan.max_object_size = 1;
+  StandingRegion left;  // broad, 0.6 of the square of the largest object: an object may be as large
+  left.slope = BreakSlope::GENTLE;
+  left.low_row = 0, left.high_row = 9, left.low_col = 0, left.high_col = 19;
+  left.area = 60;
+  left.broad = true;
+  left.seam = {{5, 19}};
+  StandingRegion right = left;
+  right.low_col = 20, right.high_col = 39;
+  right.seam = {{6, 20}};
+  const SiteBreaks together = breaksOf(plan, {left, right});
+  EXPECT_TRUE(together.land_breaks);
+  EXPECT_EQ(together.verdicts.size(), 2U);  // that their tiles did not know
+  right.seam = {{8, 20}};
+  const SiteBreaks apart = breaksOf(plan, {left, right});
+  EXPECT_FALSE(apart.land_breaks);
+  EXPECT_TRUE(apart.verdicts.empty());
+  right.seam = {{6, 20}};
+  right.slope = BreakSlope::PROOF;
+  EXPECT_FALSE(breaksOf(plan, {left, right}).land_breaks) << "regions of different slopes";
+}
+
 TEST(SiteSpread, IsTheMedianOverTheObservedCells) {
   EXPECT_EQ(siteSpread({}), 0);
   EXPECT_EQ(siteSpread({{0.5, 0}, {0.1, 3}}), 0.1);
