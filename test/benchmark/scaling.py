@@ -4,8 +4,9 @@
     scaling.py build/test/benchmark/segment_benchmark [-o FOLDER] [--points 10000,...] [--threads 1,2]
 
 Every figure is that of a process of its own: the median time of its repetitions, and the peak of its memory less that of
-one which holds the cloud only. Writes scaling.json and scaling.svg (log-log) and prints the table. Filters whose time grows
-faster than the points are left out above --slow-points.
+one which holds the cloud only. (Making a cloud of up to 600,000 points takes more than segmenting it: that shows as 0.)
+Writes scaling.json and scaling.svg (log-log) and prints the table. Filters whose time grows faster than the points are
+left out above --slow-points.
 """
 import argparse
 import json
