@@ -16,6 +16,11 @@ namespace {
 /// A valid small file of each kind, damaged in every way that a fixed seed gives.
 class DamagedCloudFile : public CloudFile, public ::testing::WithParamInterface<std::string> {
  protected:
+  void SetUp() override {
+    CloudFile::SetUp();
+    if (GetParam() == "points.laz" && !isBuiltWithLaszip()) GTEST_SKIP() << "built without LASzip";
+  }
+
   std::string validFile() const {
     pcl::PCLPointCloud2 table;
     pcl::toPCLPointCloud2(labelledCloud(), table);
@@ -28,6 +33,7 @@ class DamagedCloudFile : public CloudFile, public ::testing::WithParamInterface<
                              GetParam() == "binary.ply", true);
     }
     if (GetParam() == "points.las") makeFile("valid", lasFile());
+    if (GetParam() == "points.laz") makeFile("valid", packedLas(lasFile()));
     if (GetParam() == "floats.bin") makeFile("valid", std::string(80, '\0'));
     if (GetParam() == "text.csv") makeFile("valid", "x;y;z;label\n1.5;2;3;0\n4;5e1;nan;1\n-7;8;9;2\n");
     return contentOf(path).substr(0, usedSize(path));
@@ -119,7 +125,7 @@ const std::vector<std::string> EXTREMES{
 
 TEST_P(DamagedCloudFile, NumbersOfTheHeaderAtTheirExtremes) {
   const std::string content = validFile();
-  if (GetParam() == "points.las") {
+  if (GetParam() == "points.las" || GetParam() == "points.laz") {
     for (std::size_t place = 24; place < 227; ++place)
       for (const std::size_t bytes : {1U, 2U, 4U, 8U})
         for (const char byte : {'\0', '\x7f', '\xff'}) {
@@ -164,7 +170,8 @@ TEST_P(DamagedCloudFile, NothingIsWrittenOfAFileCutAtAny32nd) {
 
 INSTANTIATE_TEST_SUITE_P(EveryKind, DamagedCloudFile,
                          ::testing::Values("ascii.pcd", "binary.pcd", "compressed.pcd", "ascii.ply",
-                                           "binary.ply", "text.csv", "points.las", "floats.bin"),
+                                           "binary.ply", "text.csv", "points.las", "points.laz",
+                                           "floats.bin"),
                          [](const auto& parameter) {
                            std::string name = parameter.param;
                            name[name.find('.')] = '_';

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "errors.h"
+#include "io/las_header.h"
+
 namespace pcl_fft_ground::cli {
 
 /// Writes a number over the bytes at a place.
@@ -62,6 +65,16 @@ inline std::string lasFile(unsigned minor = 2, std::uint8_t format = 3,
     bytes += record;
   }
   return bytes;
+}
+
+/// Whether LAZ can be read and written.
+inline bool isBuiltWithLaszip() {
+  try {
+    packedLas(lasFile());
+    return true;
+  } catch (const WorkError&) {
+    return false;
+  }
 }
 
 }  // namespace pcl_fft_ground::cli

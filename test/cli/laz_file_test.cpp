@@ -5,21 +5,11 @@
 #include <cstdlib>
 
 #include "cloud_file_fixture.h"
-#include "io/las_header.h"
 #include "las_bytes.h"
 #include "segment_fixture.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
-
-bool isBuiltWithLaszip() {
-  try {
-    packedLas(lasFile());
-    return true;
-  } catch (const WorkError&) {
-    return false;
-  }
-}
 
 #define SKIP_WITHOUT_LASZIP() \
   if (!isBuiltWithLaszip()) GTEST_SKIP() << "built without LASzip"

@@ -22,8 +22,12 @@ std::string packedLas(std::string_view las) {
 #include <laszip/laszip_api.h>
 
 #include <algorithm>
+#include <functional>
 #include <ios>
 #include <sstream>
+#include <utility>
+
+#include "separate_process.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -94,6 +98,16 @@ void copyPoints(std::string_view file, const LasHeader& header, const Laszip& wr
     throw WorkError(DAMAGED + ("its header counts " + std::to_string(header.points)) +
                     " points, more than its compressed chunks hold");
   reader.check(laszip_close_reader(reader));
+}
+
+/// What `function` returns, from a process of its own: LASzip crashes on some damaged files.
+std::string safely(const std::function<std::string()>& function) {
+  Outcome outcome = runApart(function);
+  if (outcome.end == End::REFUSED) throw WorkError(outcome.bytes);
+  if (outcome.end == End::CRASHED) throw WorkError(std::string(DAMAGED) + "LASzip crashes on it");
+  if (outcome.end != End::DONE)
+    throw WorkError(std::string(DAMAGED) + "LASzip wants more memory than there is");
+  return std::move(outcome.bytes);
 }
 
 enum class Compression { OFF, ON };
@@ -189,7 +203,8 @@ void appendExtended(std::string_view file, const LasHeader& header, std::string&
 
 std::string unpackedLas(std::string_view laz) {
   const LasHeader header = parseLasHeader(laz, laz.size());
-  std::string las = withPoints(headOf(laz, header, ""), laz, header, Compression::OFF);
+  std::string las =
+      safely([&] { return withPoints(headOf(laz, header, ""), laz, header, Compression::OFF); });
   appendExtended(laz, header, las);
   return las;
 }

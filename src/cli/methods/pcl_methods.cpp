@@ -3,27 +3,19 @@
 #include <pcl/segmentation/approximate_progressive_morphological_filter.h>
 #include <pcl/segmentation/progressive_morphological_filter.h>
 #include <pcl/segmentation/sac_segmentation.h>
-#include <poll.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <chrono>
 #include <cmath>
-#include <csignal>
-#include <exception>
 #include <sstream>
 #include <stdexcept>
-#include <system_error>
+#include <string>
 #include <type_traits>
 #include <vector>
 
 #include "command_line.h"
 #include "methods/method.h"
 #include "pcl_fft_ground/core/grid/elevation_grid.h"
+#include "separate_process.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -43,74 +35,27 @@ struct MorphologyParameters {
   bool exponential = true;         ///< whether the windows grow exponentially
 };
 
-/** Reads the indices that another process writes to a pipe, until it closes it or the time is up.
- * \return false where the time was up
- */
-bool readUntil(int pipe, std::chrono::steady_clock::time_point deadline, std::vector<char>& bytes) {
-  std::array<char, 65536> block{};
-  while (true) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    if (left.count() <= 0) return false;
-    pollfd waiting{pipe, POLLIN, 0};
-    constexpr std::chrono::milliseconds::rep LONGEST = 1000000;
-    const int ready = poll(&waiting, 1, static_cast<int>(std::min(left.count(), LONGEST)));
-    if (ready <= 0) continue;
-    const ssize_t count = read(pipe, block.data(), block.size());
-    if (count == 0) return true;
-    if (count > 0) bytes.insert(bytes.end(), block.begin(), block.begin() + count);
-  }
-}
-
-/// Writes it all; the end of a process that cannot says enough.
-void writeWhole(int pipe, const char* bytes, std::size_t count) {
-  for (ssize_t written = 0; count > 0; bytes += written, count -= static_cast<std::size_t>(written)) {
-    written = write(pipe, bytes, count);
-    if (written <= 0) _exit(1);
-  }
-}
-
-/** Runs a filter in a process of its own: one that never ends is stopped, one that crashes takes nothing
- * along. \throws std::runtime_error saying what became of it
+/** Runs a filter in a process of its own. \return the indices that it gives
+ * \throws std::runtime_error saying what became of it
  */
 template <typename Filter>
-pcl::Indices runApart(const Filter& filter, double time_limit) {
-  std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
-  const pid_t parent = getpid();
-  const pid_t child = fork();
-  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);
-    try {
-      const pcl::Indices ground = filter();
-      writeWhole(ends[1], reinterpret_cast<const char*>(ground.data()), ground.size() * sizeof(pcl::index_t));
-      _exit(0);
-    } catch (...) {
-      _exit(1);  // out of memory: nothing else is thrown there
-    }
-  }
-  close(ends[1]);
-  std::vector<char> bytes;
-  const auto limit = std::chrono::duration<double>(time_limit);
-  const auto deadline = std::chrono::steady_clock::now() +
-                        std::chrono::duration_cast<std::chrono::steady_clock::duration>(limit);
-  const bool ended = readUntil(ends[0], deadline, bytes);
-  close(ends[0]);
-  if (!ended) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+pcl::Indices indicesOf(const Filter& filter, double time_limit) {
+  const Outcome outcome = runApart(
+      [&] {
+        const pcl::Indices ground = filter();
+        return std::string(reinterpret_cast<const char*>(ground.data()),
+                           ground.size() * sizeof(pcl::index_t));
+      },
+      time_limit);
   std::ostringstream reason;
-  if (!ended)
+  if (outcome.end == End::OUT_OF_TIME)
     reason << "not run: more than " << time_limit << " s (--pcl-time-limit)";
-  else if (WIFSIGNALED(status))
-    reason << "not run: PCL's filter crashed (signal " << WTERMSIG(status) << ")";
-  else if (WEXITSTATUS(status) != 0)
-    reason << "not run: PCL's filter ran out of memory";
+  if (outcome.end == End::CRASHED)
+    reason << "not run: PCL's filter crashed (signal " << outcome.signal << ")";
+  if (outcome.end == End::OUT_OF_MEMORY) reason << "not run: PCL's filter ran out of memory";
   if (!reason.str().empty()) throw std::runtime_error(reason.str());
-  pcl::Indices ground(bytes.size() / sizeof(pcl::index_t));
-  std::copy_n(bytes.data(), bytes.size(), reinterpret_cast<char*>(ground.data()));
+  pcl::Indices ground(outcome.bytes.size() / sizeof(pcl::index_t));
+  std::copy_n(outcome.bytes.data(), outcome.bytes.size(), reinterpret_cast<char*>(ground.data()));
   return ground;
 }
 
@@ -145,7 +90,7 @@ class PclGroundFilter : public GroundSegmentation<Point> {
     const pcl::PointCloud<Point>::Ptr cloud(new pcl::PointCloud<Point>);
     for (Eigen::Index n = 0; n < points.cols(); ++n)
       cloud->push_back({points(0, n), points(1, n), points(2, n)});
-    const pcl::Indices ground = runApart([&] { return groundOf(cloud); }, time_limit_);
+    const pcl::Indices ground = indicesOf([&] { return groundOf(cloud); }, time_limit_);
     core::Labels labels(cloud->size(), core::Label::OBJECT);
     for (const pcl::index_t n : ground) labels.at(static_cast<std::size_t>(n)) = core::Label::GROUND;
     return labels;
