@@ -1,6 +1,7 @@
 #include <pcl/console/print.h>
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -10,6 +11,7 @@
 #include "commands/commands.h"
 #include "errors.h"
 #include "pcl_fft_ground/version.h"
+#include "printable.h"
 
 namespace {
 
@@ -60,10 +62,8 @@ int run(const std::vector<std::string>& words) {
   return 0;
 }
 
-/// An error is one line, whatever it was made of.
-int report(std::string message, int status) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  std::cerr << "pcl_fft_ground: " << message << std::endl;
+int report(const std::string& message, int status) {
+  pcl_fft_ground::cli::printFault(message);
   return status;
 }
 
@@ -71,6 +71,7 @@ int report(std::string message, int status) {
 
 int main(int argc, char** argv) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error like a full disk
   try {
     return run({argv + 1, argv + argc});
   } catch (const pcl_fft_ground::cli::UsageError& error) {

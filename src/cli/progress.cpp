@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iostream>
 
+#include "printable.h"
+
 namespace pcl_fft_ground::cli {
 
 Progress::Progress(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) != 0) {}
@@ -17,9 +19,9 @@ Progress::~Progress() {
 void Progress::begin(const std::string& name, const std::string& text) {
   end();
   stage_ = name;
-  text_ = text;
+  text_ = printable(text);
   begun_ = shown_ = Clock::now();
-  if (visible_) std::cerr << "\r\033[K" << text << " ..." << std::flush;
+  if (visible_) std::cerr << "\r\033[K" << text_ << " ..." << std::flush;
 }
 
 void Progress::advance(double share) {

@@ -62,7 +62,7 @@ TEST_F(CloudFile, MalformedTextNamesTheLine) {
   expectError("i.xyz", "id x depth\n1 2 3\n", "'id, x, depth'");
   expectError("j.xyz", "1 2 0x3\n", "line 1 is malformed");
   expectError("k.xyz", "1 2 \x1b[31m\x07" + std::string(5000, 'a') + "\n",
-              "line 1 is malformed: '1 2 ?[31m?aaa");
+              "line 1 is malformed: '1 2 \\x1b[31m\\x07aaa");
   expectError("l.xyz", "# nothing here\n\n", "holds no points");
   expectError("m.xyz", "x y z\n", "holds no points");
   expectError("n.xyz", std::string("1 2 3\n\0\n", 8), "neither PCD nor PLY nor LAS nor text");

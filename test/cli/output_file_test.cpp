@@ -1,6 +1,8 @@
 #include "io/output_file.h"
 
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <stdexcept>
@@ -129,6 +131,48 @@ TEST_F(OutputFile, AFileInTheWayOfAFolderIsAnError) {
     EXPECT_NE(message.find("'" + path + "'"), std::string::npos) << message;
   }
   EXPECT_EQ(contentOf(pathOf("file")), "x");
+}
+
+TEST_F(OutputFile, AFolderIsOneRunsAtATime) {
+  {
+    const OutputFolder first(pathOf("results"));
+    const auto message = messageOf([&] { OutputFolder(pathOf("results/../results")); });
+    EXPECT_NE(message.find("another run is writing to the folder"), std::string::npos) << message;
+    EXPECT_NE(message.find(pathOf("results/../results")), std::string::npos) << message;
+    const OutputFolder other(pathOf("results/inside"));
+  }
+  EXPECT_NO_THROW(OutputFolder(pathOf("results")));
+  EXPECT_EQ(names(), std::vector<std::string>{"results"});
+}
+
+TEST_F(OutputFile, AFolderThatCannotBeMadeIsNoOutputFolder) {
+  makeFile("file", "x");
+  EXPECT_NE(messageOf([&] { OutputFolder(pathOf("file")); }).find("it is a file"), std::string::npos);
+}
+
+TEST_F(OutputFile, WhatAKilledRunLeftHalfWrittenGoesWithTheNextRun) {
+  const pid_t killed = fork();
+  if (killed == 0) {
+    try {
+      writeWhole(pathOf("a.pcd"), [](const std::string& temporary) {
+        std::ofstream(temporary) << "half";
+        raise(SIGKILL);
+      });
+    } catch (...) {
+    }
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(killed, &status, 0), killed);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_EQ(names().size(), 1u);
+  const std::string of_a_living_process = ".b.pcd." + std::to_string(getppid()) + ".part";
+  for (const std::string& name : {of_a_living_process, std::string(".part"), std::string(".x.part"),
+                                  std::string("c.9999999.part"), std::string(".d.-5.part")})
+    makeFile(name, "not ours to remove");
+  const OutputFolder folder(folder_.string());
+  EXPECT_EQ(names().size(), 5u);
+  EXPECT_TRUE(std::filesystem::exists(pathOf(of_a_living_process)));
 }
 
 }  // namespace

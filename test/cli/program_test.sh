@@ -93,7 +93,7 @@ refused 1 "'scan.pcd'" segment scan.pcd -o scan.pcd
 refused 1 "nowhere" simulate wreck -o nowhere/scan.pcd --points 100
 name="one
 line.pcd"
-refused 1 "one line.pcd" segment "$name" -o result
+refused 1 'one\\nline.pcd' segment "$name" -o result
 
 # A folder that may not be written, and a disk that is full.
 mkdir locked

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "printable.h"
+
 namespace pcl_fft_ground::cli {
 
 /// Takes the first line off `text` and returns it without its line end (LF or CR LF).
@@ -46,15 +48,10 @@ std::optional<Number> parseNumber(std::string_view text) {
   return number;
 }
 
-/// `text` in quotes, fit for a one-line message: cut to a readable length, without control characters.
+/// `text` in quotes, fit for a message: cut to a readable length and escaped.
 inline std::string quoted(std::string_view text) {
   constexpr std::size_t longest = 60;
-  std::string result = "'";
-  for (const char c : text.substr(0, longest)) {
-    const bool printable = static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
-    result += printable ? c : '?';
-  }
-  return result + (text.size() > longest ? "...'" : "'");
+  return "'" + printable(text.substr(0, longest)) + (text.size() > longest ? "...'" : "'");
 }
 
 }  // namespace pcl_fft_ground::cli

@@ -8,7 +8,22 @@ namespace pcl_fft_ground::cli {
 using nlohmann::ordered_json;
 
 std::string asText(const ordered_json& report) {
-  return report.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  // JSON may hold DEL and the control characters above ASCII as they are; a terminal would obey them.
+  const std::string text = report.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : '\0');
+    if (byte == 0x7F) {
+      result += "\\u007f";
+    } else if (byte == 0xC2 && next < 0xA0) {
+      result += std::string("\\u00") + "89"[next >= 0x90] + "0123456789abcdef"[next & 0xFU];
+      ++i;
+    } else {
+      result += text[i];
+    }
+  }
+  return result + "\n";
 }
 
 ordered_json orNull(const std::optional<double>& value) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "pcl_fft_ground/core/scan/threads.h"
@@ -11,12 +12,18 @@ namespace {
 
 constexpr Eigen::Index COLUMNS_AT_A_TIME = 64;
 
+/// The reciprocal of a size that float holds need not be finite there, and infinity times nothing is no place.
+float finiteFloat(double value) {
+  constexpr double LARGEST = std::numeric_limits<float>::max();
+  return static_cast<float>(std::min(value, LARGEST));
+}
+
 }  // namespace
 
 Clearance::Patches::Patches(const GroundSurface& surface)
     : rows(static_cast<std::int32_t>(surface.height.rows()) + 1),
       cols(static_cast<std::int32_t>(surface.height.cols()) + 1),
-      per_metre(static_cast<float>(1 / surface.geometry.cell_size)),
+      per_metre(finiteFloat(1 / surface.geometry.cell_size)),
       x_first(static_cast<float>(surface.geometry.origin.x() - 0.5 * surface.geometry.cell_size)),
       y_first(static_cast<float>(surface.geometry.origin.y() - 0.5 * surface.geometry.cell_size)),
       x_end(std::nextafter(static_cast<float>(rows), 0.0F)),

@@ -10,6 +10,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/scanner.h"
+#include "printable.h"
 #include "progress.h"
 #include "reading_options.h"
 #include "report/report.h"
@@ -115,7 +116,7 @@ void alignClouds(AlignedPair& pair, const AlignmentSettings& settings, const Seg
 void printSummary(const AlignedPair& pair, const ordered_json& report) {
   const core::Alignment& alignment = pair.icp.getAlignment();
   if (!alignment.accepted) {
-    std::cout << "not aligned: " << alignment.refusal << "\n";
+    std::cout << "not aligned: " << printable(alignment.refusal) << "\n";
     return;
   }
   const Eigen::Isometry3d& found = alignment.reference_from_moving;
@@ -154,7 +155,7 @@ void align(const po::variables_map& values) {
   progress.begin("align", "aligning");
   alignClouds(pair, settings, segmenter);
   progress.begin("write", "writing " + directory);
-  makeDirectory(directory);
+  const OutputFolder folder(directory);
   const ordered_json report = makeAlignmentReport(pair, settings, segmenter);
   writeAlignment(directory, pair, report);
   if (!page.empty()) writeText(page, alignmentPage(directory, pair, report));

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "commands/evaluate/evaluation_table.h"
 #include "errors.h"
 #include "io/output_file.h"
+#include "printable.h"
 #include "progress.h"
 #include "reading_options.h"
 #include "report/html_page.h"
@@ -109,13 +111,13 @@ void checkClouds(const Names& clouds, const ReadOptions& reading, bool quiet, Pr
     progress.begin("check", placeOf(clouds, n) + ": checking");
     const LabelledCloud cloud = readLabelledCloud(clouds[n], reading);
     for (const std::string& remark : cloud.cloud.remarks)
-      if (!quiet) std::cerr << "pcl_fft_ground: warning: " << clouds[n] << ": " << remark << '\n';
+      if (!quiet) printWarning(clouds[n] + ": " + remark);
   }
 }
 
 void printWarnings(const std::string& cloud, const Segmenter& segmenter) {
   for (const std::string& warning : segmenter.filter->getWarnings())
-    std::cerr << "pcl_fft_ground: warning: " << cloud << ": " << segmenter.method << ": " << warning << '\n';
+    printWarning(cloud + ": " + segmenter.method + ": " + warning);
 }
 
 void writePicture(const std::string& directory, const std::string& name, const LabelledCloud& cloud,
@@ -162,7 +164,8 @@ std::vector<EvaluationRow> evaluateAll(const Names& clouds, std::vector<Segmente
   Progress progress(quiet);
   const ReadOptions reading = readOptions(values);
   checkClouds(clouds, reading, quiet, progress);
-  if (values.count("pictures") != 0) makeDirectory(values["pictures"].as<std::string>());
+  std::optional<OutputFolder> folder;
+  if (values.count("pictures") != 0) folder.emplace(values["pictures"].as<std::string>());
   std::vector<EvaluationRow> rows;
   for (std::size_t n = 0; n < clouds.size(); ++n) {
     progress.begin("read", placeOf(clouds, n));
@@ -209,7 +212,7 @@ void runEvaluate(const std::vector<std::string>& arguments) {
   HtmlPage page;
   const std::vector<EvaluationRow> rows = evaluateAll(clouds, segmenters, values, page);
   if (values["json"].as<bool>())
-    std::cout << asJson(rows).dump(2) << '\n';
+    std::cout << asText(asJson(rows));
   else
     printTable(std::cout, rows);
   if (values.count("csv") != 0) writeText(values["csv"].as<std::string>(), asCsv(rows));

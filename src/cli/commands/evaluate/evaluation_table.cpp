@@ -6,6 +6,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "printable.h"
+
 namespace pcl_fft_ground::cli {
 namespace {
 
@@ -72,14 +74,14 @@ std::ostream& startRow(std::ostream& out, int width, const std::string& method) 
 
 void printBlock(std::ostream& out, const std::vector<EvaluationRow>& rows, const Group& group) {
   const int method_width = methodWidthOf(rows);
-  out << group.title << '\n';
+  out << printable(group.title) << '\n';
   startRow(out, method_width, "");
   for (const Measure& measure : measures()) out << std::setw(widthOf(measure)) << measure.name;
   out << '\n';
   for (const std::string& method : distinct(rows, &EvaluationRow::method)) {
     startRow(out, method_width, method);
     const std::string failure = group.cloud.empty() ? "" : rowOf(rows, method, group.cloud).failure;
-    if (!failure.empty()) out << "  " << failure;
+    if (!failure.empty()) out << "  " << printable(failure);
     for (const Measure& measure : measures())
       if (failure.empty())
         out << std::setw(widthOf(measure)) << fixedText(valueOf(rows, method, group, measure));
@@ -89,7 +91,10 @@ void printBlock(std::ostream& out, const std::vector<EvaluationRow>& rows, const
 
 /// Left out the beginning of a title that is too long for its column: names differ at their ends.
 std::string shortened(const std::string& title, std::size_t width) {
-  return title.size() <= width ? title : ".." + title.substr(title.size() - width + 2);
+  if (title.size() <= width) return title;
+  std::size_t first = title.size() - width + 2;
+  while (first < title.size() && (static_cast<unsigned char>(title[first]) & 0xC0U) == 0x80U) ++first;
+  return ".." + title.substr(first);
 }
 
 /// The columns of Table I for these groups, side by side.
@@ -98,7 +103,8 @@ void printSideBySide(std::ostream& out, const std::vector<EvaluationRow>& rows,
   constexpr int WIDTH = TABLE_ONE_MEASURES * RATE_WIDTH;
   const int method_width = methodWidthOf(rows);
   startRow(out, method_width, "");
-  for (const Group& group : groups) out << std::setw(GROUP_GAP + WIDTH) << shortened(group.title, WIDTH);
+  for (const Group& group : groups)
+    out << std::setw(GROUP_GAP + WIDTH) << printable(shortened(group.title, WIDTH));
   out << '\n';
   startRow(out, method_width, "");
   for (std::size_t n = 0; n < groups.size(); ++n) {

@@ -19,6 +19,7 @@
 #include "methods/method.h"
 #include "pcl_fft_ground/core/segments/object_clusters.h"
 #include "pcl_fft_ground/version.h"
+#include "printable.h"
 #include "progress.h"
 #include "reading_options.h"
 #include "report/report.h"
@@ -312,9 +313,7 @@ void finish(const po::variables_map& values, const std::string& directory, const
   const std::string text = asText(report);
   writeText(directory + "/report.json", text);
   for (const ordered_json& warning : report["warnings"])
-    if (!quiet)
-      std::cerr << "pcl_fft_ground: warning: " << report["input"].get<std::string>() << ": "
-                << warning.get<std::string>() << '\n';
+    if (!quiet) printWarning(report["input"].get<std::string>() + ": " + warning.get<std::string>());
   if (values["json"].as<bool>())
     std::cout << text;
   else if (!quiet)
@@ -353,7 +352,7 @@ void segmentTiled(const po::variables_map& values, const std::string& input, con
   CloudStream stream(input, request.reading);
   if (values.count("classes") != 0 && stream.format() != CloudFormat::LAS)
     throw UsageError("--classes: only a LAS file gets classes, and '" + input + "' is none");
-  makeDirectory(directory);
+  const OutputFolder folder(directory);
   Progress progress(values["quiet"].as<bool>());
   const ordered_json report = segmentByTiles(stream, directory, segmenter.method, request, progress);
   finish(values, directory, report);
@@ -385,7 +384,7 @@ void segment(const po::variables_map& values) {
   chooseLengths(values, segmenter.cellSize(), clusters);
   clusterObjects(cloud, clusters, segmentation);
   progress.begin("write", "Writing to " + directory);
-  makeDirectory(directory);
+  const OutputFolder folder(directory);
   writeClouds(directory, cloud, segmentation);
   if (cloud.format == CloudFormat::LAS) writeLas(directory, input, cloud, segmenter, segmentation, classes);
   writeGroundSurface(directory, cloud, segmentation, raster);

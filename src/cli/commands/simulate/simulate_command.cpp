@@ -12,6 +12,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "pcl_fft_ground/simulation/simulation.h"
+#include "printable.h"
 #include "report/report.h"
 
 namespace pcl_fft_ground::cli {
@@ -160,7 +161,7 @@ void printJson(const Request& request, const Summary& summary) {
 void printLine(const Request& request, const Summary& summary) {
   std::cout << request.scene << ": " << summary.points << " points, " << std::fixed << std::setprecision(1)
             << 100.0 * summary.object_share << " % on " << summary.objects << " objects, written to "
-            << request.output << "\n";
+            << printable(request.output) << "\n";
 }
 
 }  // namespace

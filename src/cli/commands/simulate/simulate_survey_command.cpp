@@ -14,6 +14,7 @@
 #include "io/output_file.h"
 #include "io/pose_table.h"
 #include "pcl_fft_ground/simulation/survey_simulation.h"
+#include "printable.h"
 #include "progress.h"
 #include "report/report.h"
 
@@ -138,7 +139,7 @@ void removeEarlierSurvey(const std::string& folder) {
 }
 
 void writeSurvey(const Request& request, const core::SurveySimulation& survey, Progress& progress) {
-  makeDirectory(request.output);
+  const OutputFolder folder(request.output);
   removeEarlierSurvey(request.output);
   std::vector<NamedPose> truth(survey.size());
   std::mutex shown;
@@ -166,7 +167,7 @@ void printSummary(const Request& request, std::size_t submaps) {
                          {"drift", request.parameters.drift}});
   } else if (!request.quiet) {
     std::cout << request.site << ": " << submaps << " sub-maps of " << request.parameters.points
-              << " points and truth.csv, written to " << request.output << "\n";
+              << " points and truth.csv, written to " << printable(request.output) << "\n";
   }
 }
 

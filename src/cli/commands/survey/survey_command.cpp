@@ -12,6 +12,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "pcl_fft_ground/version.h"
+#include "printable.h"
 #include "progress.h"
 #include "report/report.h"
 
@@ -241,18 +242,18 @@ void surveyFolders(const po::variables_map& values) {
   const core::Threads threads(threadsOf(values));
   const bool quiet = values["quiet"].as<bool>();
   const std::string page = reportPath(values, request.directory);
-  makeDirectory(request.directory);
+  const OutputFolder folder(request.directory);
   Progress progress(quiet);
   if (request.shard) return alignShards(request, progress, quiet);
   std::vector<SurveyOutcome> outcomes;
   std::vector<ordered_json> reports;
   for (const SurveyTask& task : request.surveys) {
-    makeDirectory(task.directory);
+    std::optional<OutputFolder> own_folder;
+    if (task.directory != request.directory) own_folder.emplace(task.directory);
     outcomes.push_back(processSurvey(task, request, progress));
     reports.push_back(report(task, outcomes.back(), request));
     progress.end();
-    for (const LeftOut& file : outcomes.back().left_out)
-      std::cerr << "pcl_fft_ground: warning: left out: " << file.reason << '\n';
+    for (const LeftOut& file : outcomes.back().left_out) printWarning("left out: " + file.reason);
   }
   if (outcomes.size() > 1) {
     outcomes.push_back(pooled(outcomes));

@@ -6,6 +6,7 @@
 #include "pcl_fft_ground/core/align/crispness.h"
 #include "pcl_fft_ground/core/survey/survey_tables.h"
 #include "pcl_fft_ground/version.h"
+#include "printable.h"
 #include "report/report.h"
 
 namespace pcl_fft_ground::cli {
@@ -160,7 +161,7 @@ void printTables(std::ostream& out, const std::vector<core::PairResult>& pairs) 
 }
 
 void printSurvey(std::ostream& out, const SurveyOutcome& outcome, const std::string& mapping) {
-  out << outcome.name << ": " << outcome.submaps << " sub-maps";
+  out << printable(outcome.name) << ": " << outcome.submaps << " sub-maps";
   if (!outcome.left_out.empty()) out << ", " << outcome.left_out.size() << " left out";
   out << '\n';
   printTables(out, outcome.pairs);
