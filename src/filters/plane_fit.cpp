@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace pcl_fft_ground {
@@ -44,6 +45,14 @@ Cloud::Ptr sortedCloud(const core::Points& points) {
   return cloud;
 }
 
+/// The power of two that brings the extent of the points to 1 or a little less than 2: PCL takes three points
+/// for a plane only where they span more than a hundred thousandth of a square metre, whatever the unit.
+double ownUnit(const core::Points& points) {
+  const core::Bounds bounds = core::boundsOf(points);
+  constexpr int MOST = std::numeric_limits<float>::max_exponent - 2;
+  return std::ldexp(1.0, std::clamp(-std::ilogb((bounds.high - bounds.low).maxCoeff()), -MOST, MOST));
+}
+
 /// True if the points determine a plane: PCL complains on its console where they do not.
 bool spanPlane(const core::Points& points) {
   if (points.cols() < 3) return false;
@@ -63,8 +72,10 @@ std::optional<core::Plane> asHeights(const Eigen::VectorXf& coefficients) {
 
 std::optional<core::Plane> fitPlane(const core::Points& points, const PlaneFitParameters& parameters) {
   if (!spanPlane(points)) return std::nullopt;
-  const SeededPlaneModel::Ptr model(new SeededPlaneModel(sortedCloud(points), parameters.seed));
-  pcl::MaximumLikelihoodSampleConsensus<Point> mlesac(model, parameters.distance_threshold);
+  const double unit = ownUnit(points);
+  const core::Points scaled = points * static_cast<float>(unit);
+  const SeededPlaneModel::Ptr model(new SeededPlaneModel(sortedCloud(scaled), parameters.seed));
+  pcl::MaximumLikelihoodSampleConsensus<Point> mlesac(model, parameters.distance_threshold * unit);
   mlesac.setMaxIterations(parameters.max_iterations);
   mlesac.setProbability(parameters.probability);
   if (!mlesac.computeModel()) return std::nullopt;
@@ -78,6 +89,7 @@ std::optional<core::Plane> fitPlane(const core::Points& points, const PlaneFitPa
     const Eigen::VectorXf found = coefficients;
     model->optimizeModelCoefficients(inliers, found, coefficients);
   }
+  coefficients[3] /= static_cast<float>(unit);
   return asHeights(coefficients);
 }
 

@@ -114,8 +114,22 @@ TEST(PlaneFit, PointsThatSpanNoPlaneGiveNoneAndNothingIsPrinted) {
   expectNoPlaneAndSilence(Points::Constant(3, 300, 0.3f));
   const Eigen::RowVectorXf along = Eigen::RowVectorXf::LinSpaced(300, -2, 2);
   expectNoPlaneAndSilence(Eigen::Vector3f(1, -2, 0.5f) * along);
+}
+
+TEST(PlaneFit, TheUnitDoesNotMatter) {
   std::mt19937 random(7);
-  expectNoPlaneAndSilence(test::randomBox(300, {0, 0, 0}, {4e-4, 3e-4, 3e-5}, random));
+  const Points points = test::randomBox(300, {0, 0, 0}, {0.5, 0.375, 0.01}, random);
+  PlaneFitParameters parameters;
+  parameters.distance_threshold = 0.005;
+  const std::optional<Plane> plane = fitPlane(points, parameters);
+  ASSERT_TRUE(plane);
+  for (const float scale : {1.0F / 1024, 1024.0F}) {  // nothing is rounded
+    parameters.distance_threshold = 0.005 * static_cast<double>(scale);
+    const std::optional<Plane> scaled = fitPlane(points * scale, parameters);
+    ASSERT_TRUE(scaled) << scale;
+    EXPECT_EQ(scaled->slope, plane->slope) << scale;
+    EXPECT_EQ(scaled->offset, plane->offset * static_cast<double>(scale)) << scale;
+  }
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace {
 
 constexpr Eigen::Index COLUMNS_AT_A_TIME = 64;
 
-/// The reciprocal of a size that float holds need not be finite there, and infinity times nothing is no place.
+/// The reciprocal of a size that float holds need not be finite there, and infinity times nothing is no
+/// place.
 float finiteFloat(double value) {
   constexpr double LARGEST = std::numeric_limits<float>::max();
   return static_cast<float>(std::min(value, LARGEST));

@@ -60,7 +60,9 @@ void PenalisedFit::improve(const Eigen::ArrayXXd& weights, const Eigen::ArrayXXd
     image_ = weights_ * step_;
     step_transform_.forward(image_);
     image_ += penalty_ * direction_;
-    const float length = product / (direction_ * image_).sum();
+    const float curvature = (direction_ * image_).sum();
+    const float length = product / curvature;
+    if (!(curvature > 0) || !std::isfinite(length)) break;  // squares beyond the range of float: no step then
     coefficients_ += (length * direction_).cast<double>();
     surface_ += (length * step_).cast<double>();
     if (n + 1 == effort.steps) break;  // what follows prepares the next step

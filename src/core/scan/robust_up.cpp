@@ -1,6 +1,8 @@
 #include "scan/robust_up.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "pcl_fft_ground/core/scan/point_statistics.h"
@@ -118,11 +120,22 @@ Eigen::Vector3d normalBelow(const Sheet& sheet, const Points& points, const Eige
   return clearly && elsewhere && flatter && isTrusted(lowest, given) ? lowest.normal : sheet.normal;
 }
 
+/// The points from their lower corner, in a unit of their own that is a power of two: neither the place of a
+/// scan nor its unit decides about rounding, or about which points a sample takes.
+Points inOwnUnit(Points points) {
+  if (points.cols() == 0) return points;
+  const Bounds bounds = boundsOf(points);
+  points.colwise() -= bounds.low.matrix().cast<float>();
+  const double extent = (bounds.high - bounds.low).maxCoeff();
+  if (extent > 0) points *= static_cast<float>(std::ldexp(1.0, std::clamp(-std::ilogb(extent), -126, 126)));
+  return points;
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector3d> normalOfFlattestHalf(const PointSample& scan, const Eigen::Vector3d& given) {
   constexpr Eigen::Index FEWEST_POINTS = 8, ENOUGH = 4000, ENOUGH_TO_START = 1000;
-  const Points sample = sampleOfSample(scan.points, scan.total, ENOUGH);
+  const Points sample = sampleOfSample(inOwnUnit(scan.points), scan.total, ENOUGH);
   if (sample.cols() < FEWEST_POINTS) return std::nullopt;
   const Points few = sampleOfSample(sample, scan.total, ENOUGH_TO_START);
   const std::optional<Sheet> rough =
