@@ -35,11 +35,9 @@ std::ostream& operator<<(std::ostream& out, const std::optional<double>& value) 
   return value ? out << *value : out;
 }
 
-constexpr int IN_TABLE = 12, IN_FULL = 17;  // digits: with so many a number is read as it was
-
-std::string asLine(const PairResult& r, const std::vector<std::string>& names, int digits) {
+std::string asLine(const PairResult& r, const std::vector<std::string>& names) {
   std::ostringstream line;
-  line << std::setprecision(digits) << r.method << ',' << KINDS.at(static_cast<std::size_t>(r.kind)) << ','
+  line << std::setprecision(12) << r.method << ',' << KINDS.at(static_cast<std::size_t>(r.kind)) << ','
        << names[r.reference] << ',' << names[r.moving] << ','
        << STATUSES.at(static_cast<std::size_t>(r.status)) << ',' << r.matches << ',' << r.score << ','
        << r.overlap << ',' << r.nx_before << ',' << r.nx_after << ',' << r.crispnessChange() << ','
@@ -151,7 +149,7 @@ std::vector<PairResult> parseTable(std::istream& table, const std::string& path,
 
 std::string asCsv(const std::vector<PairResult>& results, const std::vector<std::string>& names) {
   std::string csv = std::string(HEADER) + "\n";
-  for (const PairResult& result : results) csv += asLine(result, names, IN_TABLE);
+  for (const PairResult& result : results) csv += asLine(result, names);
   return csv;
 }
 
@@ -219,13 +217,13 @@ void SurveyRecord::add(const PairResult& result) {
   errno = 0;
   std::ofstream journal(journal_, std::ios::binary | std::ios::app);
   if (is_new) journal << HEADER << '\n';
-  const std::string line = asLine(result, names_, IN_FULL);
+  const std::string line = asLine(result, names_);
   journal << line;
   journal.close();
   if (!journal)
     throw WorkError("cannot write '" + journal_ +
                     "': " + (errno != 0 ? std::strerror(errno) : "writing failed"));
-  // As a run that goes on from here will read it: what follows is the same bits then.
+  // As a run that goes on from here, or is made again, will read it: what follows is the same bits then.
   results_.emplace(keyOf(result), parseLine(line.substr(0, line.size() - 1), names_));
 }
 
