@@ -145,6 +145,12 @@ TEST_F(OutputFile, AFolderIsOneRunsAtATime) {
   EXPECT_EQ(names(), std::vector<std::string>{"results"});
 }
 
+TEST_F(OutputFile, AFolderIsUsedTogetherOrAlone) {
+  const OutputFolder first(pathOf("results"), FolderUse::TOGETHER);
+  EXPECT_NO_THROW(OutputFolder(pathOf("results"), FolderUse::TOGETHER));
+  EXPECT_NE(messageOf([&] { OutputFolder(pathOf("results")); }).find("another run"), std::string::npos);
+}
+
 TEST_F(OutputFile, AFolderThatCannotBeMadeIsNoOutputFolder) {
   makeFile("file", "x");
   EXPECT_NE(messageOf([&] { OutputFolder(pathOf("file")); }).find("it is a file"), std::string::npos);

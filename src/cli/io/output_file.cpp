@@ -132,14 +132,15 @@ void makeDirectory(const std::string& path) {
   }
 }
 
-OutputFolder::OutputFolder(const std::string& path) {
+OutputFolder::OutputFolder(const std::string& path, FolderUse use) {
   makeDirectory(path);
   descriptor_ = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  if (descriptor_ >= 0 && flock(descriptor_, (use == FolderUse::ALONE ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0 &&
+      errno == EWOULDBLOCK) {
     close(descriptor_);
     throw WorkError("another run is writing to the folder '" + path + "'");
   }
-  removeLeftovers(path);
+  if (use == FolderUse::ALONE) removeLeftovers(path);
 }
 
 OutputFolder::~OutputFolder() {

@@ -29,14 +29,20 @@ void writeText(const std::string& path, std::string_view content);
 /// \throws WorkError naming the folder, for one if `path` or a part of it is a file
 void makeDirectory(const std::string& path);
 
+/// Whether a run wants a folder of results for itself.
+enum class FolderUse {
+  ALONE,     ///< no other run may use it
+  TOGETHER,  ///< others may that use it together, too, such as the shards of a survey
+};
+
 /// The folder that a run writes its results to, and no other run while this object lives: so what lies there
 /// at the end comes from one run. The lock goes with the process, however it ends. Where the system cannot
 /// lock a folder (some network file systems, a folder that may not be listed) there is none.
 class OutputFolder {
  public:
-  /// Makes the folder if need be, and removes what runs that were killed left half-written in it.
+  /// Makes the folder if need be. A run alone removes what runs that were killed left half-written in it.
   /// \throws WorkError naming the folder, also if another run writes to it
-  explicit OutputFolder(const std::string& path);
+  explicit OutputFolder(const std::string& path, FolderUse use = FolderUse::ALONE);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;

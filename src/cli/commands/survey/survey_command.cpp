@@ -232,8 +232,8 @@ void alignShards(SurveyRequest& request, Progress& progress, bool quiet) {
     const std::size_t pairs = processShard(task, request, progress);
     progress.end();
     if (!quiet)
-      std::cout << task.name << ": " << pairs << " pairs, shard " << request.shard->number << " of "
-                << request.shard->count << '\n';
+      std::cout << printable(task.name) << ": " << pairs << " pairs, shard " << request.shard->number
+                << " of " << request.shard->count << '\n';
   }
 }
 
@@ -242,7 +242,7 @@ void surveyFolders(const po::variables_map& values) {
   const core::Threads threads(threadsOf(values));
   const bool quiet = values["quiet"].as<bool>();
   const std::string page = reportPath(values, request.directory);
-  const OutputFolder folder(request.directory);
+  const OutputFolder folder(request.directory, request.shard ? FolderUse::TOGETHER : FolderUse::ALONE);
   Progress progress(quiet);
   if (request.shard) return alignShards(request, progress, quiet);
   std::vector<SurveyOutcome> outcomes;
