@@ -35,6 +35,7 @@ struct Moments {
 };
 
 using IntegerMoments = Moments<std::int64_t>;
+using Sums = Eigen::Matrix<std::int64_t, 9, 1>;
 /// Of two points at a time in double, which is exact up to 2^53.
 struct PairMoments : Moments<Eigen::Array2d> {
   void addTo(IntegerMoments& total) const {
@@ -43,12 +44,11 @@ struct PairMoments : Moments<Eigen::Array2d> {
 };
 
 Eigen::Vector3d meanOf(const IntegerMoments& moments, double n) {
-  const auto& s = moments.sums;
-  return Eigen::Vector3d(s[0], s[1], s[2]) / n;
+  return Eigen::Map<const Sums>(moments.sums.data()).head<3>().cast<double>() / n;
 }
 
 Eigen::Matrix3d covarianceOf(const IntegerMoments& moments, double n) {
-  const auto& s = moments.sums;
+  const Eigen::Matrix<double, 9, 1> s = Eigen::Map<const Sums>(moments.sums.data()).cast<double>();
   const Eigen::Vector3d mean = meanOf(moments, n);
   Eigen::Matrix3d products;
   products << s[3], s[4], s[5], s[4], s[6], s[7], s[5], s[7], s[8];

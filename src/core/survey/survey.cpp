@@ -12,7 +12,7 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-constexpr double DEGREE = EIGEN_PI / 180;
+constexpr double DEGREE = static_cast<double>(EIGEN_PI / 180);
 constexpr std::size_t MOST_NEIGHBOURS = 6;  // that a newcomer is aligned with: those it overlaps most
 
 /// The result of a pair as far as it does not depend on what was found.

@@ -11,7 +11,7 @@
 namespace pcl_fft_ground::core {
 namespace {
 
-constexpr double DEGREE = EIGEN_PI / 180;
+constexpr double DEGREE = static_cast<double>(EIGEN_PI / 180);
 // What the covariance of an alignment knows nothing of: a scan is not quite rigid.
 constexpr double MODEL_TRANSLATION = 0.004;  // [m]
 constexpr double MODEL_ROTATION = 0.08 * DEGREE;
