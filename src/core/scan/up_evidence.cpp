@@ -257,8 +257,9 @@ std::vector<CubePlace> placesOnCube(const PointsView& points) {
     const float along = p.cwiseAbs().maxCoeff(&axis);
     if (!(along > 0)) continue;  // what a sensor did not see, some files put at the origin
     const auto face = static_cast<int>(2 * axis + (p[axis] < 0 ? 1 : 0));
+    const float distance = std::max(p.norm(), along);  // the squares of the least floats are 0
     places.push_back(
-        {face, angle(p[(axis + 1) % 3] / along), angle(p[(axis + 2) % 3] / along), std::log(p.norm())});
+        {face, angle(p[(axis + 1) % 3] / along), angle(p[(axis + 2) % 3] / along), std::log(distance)});
   }
   return places;
 }
