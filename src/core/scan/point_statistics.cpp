@@ -133,7 +133,8 @@ double wholeOrigin(std::vector<double> coordinates) {
 
 MomentsInParts::MomentsInParts(const Bounds& bounds, Eigen::Index points) : points_(points), bounds_(bounds) {
   const double extent = (bounds.high - bounds.low).maxCoeff();
-  if (extent > 0) steps_ = std::ldexp(1.0, quantisationBits(points)) / extent;
+  constexpr double LEAST = 1e-32;  // below it float does not hold the steps: all points are in one place then
+  if (extent > LEAST) steps_ = std::ldexp(1.0, quantisationBits(points)) / extent;
 }
 
 void MomentsInParts::add(const PointsView& part) {
