@@ -75,7 +75,9 @@ Relief::Relief(const PointsView& points, double leaf_size) {
     const int quarter = quarterOf(point, voxels[v], leaf_size);
     blocks.quarter_of_point[n] = static_cast<std::int8_t>(quarter);
     HeightSum& sum = blocks.sums[4 * v + static_cast<std::size_t>(quarter)];
-    sum.sum += std::llround((point.z() / leaf_size - static_cast<double>(voxels[v].k)) * FIXED_POINT);
+    // In [0, 1] but for rounding, unless a leaf is too small for the numbers of the voxels.
+    const double share = std::clamp(point.z() / leaf_size - static_cast<double>(voxels[v].k), -1.0, 2.0);
+    sum.sum += std::llround(share * FIXED_POINT);
     ++sum.count;
   }
 
