@@ -10,6 +10,7 @@
 #include "ground/robust_growth.h"
 #include "ground/robust_points.h"
 #include "ground/robust_surface.h"
+#include "ground/robust_uncertainty.h"
 #include "scan/point_sample.h"
 
 namespace pcl_fft_ground::core {
@@ -91,12 +92,19 @@ Eigen::ArrayXXd distanceFromGround(const CellPoints& ground, const GridGeometry&
   return cells.cell_size * distancesFrom(observed);
 }
 
-void describeSurface(const RobustSurface& surface, const RobustPlan& plan, RobustGround& ground) {
+void describeSurface(const RobustSurface& surface, const SortedPoints& points, const RobustPlan& plan,
+                     RobustGround& ground) {
+  constexpr double DEEPEST = 10;  // spreads: further down there is no ground
   ground.surface.geometry = plan.cells;
   ground.surface.height = resampled(surface.heights(), surface.grid(), plan.cells);
   const Eigen::ArrayXXd distance = distanceFromGround(surface.points(), plan.cells);
   ground.surface.supported = distance <= plan.finest_wavelength;
-  ground.surface.uncertainty = (std::pow(ground.scale, 2) + (plan.slope * distance).square()).sqrt();
+  // Above the surface objects begin.
+  std::vector<float> below =
+      heightsIn(points, {surface.grid(), surface.heights(), -DEEPEST * ground.scale, 0});
+  ground.surface.uncertainty =
+      surfaceUncertainty(ground.surface.height, distance, plan.cells.cell_size, plan.finest_wavelength,
+                         std::max(ground.scale, deviationOf(below)));
 }
 
 /// fitRobustGround() to the planned sample of so many points.
@@ -124,7 +132,7 @@ RobustGround fitSample(const Points& sample, Eigen::Index total, const Eigen::Is
   const Mask completed = completeGround(surface, plan, ground.elevation, parameters.max_slope, ground);
   const GroundPoints found = fitGroundPoints(surface, sorted, USUAL_TOLERANCE * plan.max_object_size);
   ground.scale = found.spread;
-  describeSurface(surface, plan, ground);
+  describeSurface(surface, sorted, plan, ground);
   ground.lowest = lowestHeights(sorted, {surface.grid(), surface.heights(), 0, 0});
   ground.steps.setZero(plan.cells.rows, plan.cells.cols);
   if (completed.any()) {

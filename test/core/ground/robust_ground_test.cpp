@@ -166,7 +166,8 @@ TEST(RobustGround, SpansAHoleAndSaysSo) {
   const auto i = static_cast<Eigen::Index>(1 / cell), j = static_cast<Eigen::Index>(3 / cell);
   EXPECT_FALSE(ground.surface.supported(i, j));
   EXPECT_TRUE(ground.surface.supported(i, static_cast<Eigen::Index>(1 / cell)));
-  EXPECT_GT(ground.surface.uncertainty(i, j), 2 * ground.scale);
+  EXPECT_GE(ground.surface.uncertainty(i, j), ground.surface.uncertainty(i / 10, j / 10));
+  EXPECT_LT(std::abs(ground.surface.heightAt(1, 3) - 0.1), 3 * ground.surface.uncertainty(i, j));
   EXPECT_NEAR(ground.surface.heightAt(1, 3), 0.1, 0.02);
 }
 
