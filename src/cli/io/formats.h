@@ -141,10 +141,10 @@ RawCloud decodeText(std::string_view content);
  */
 RawCloud decodeFloats(std::string_view content, std::optional<CloudFormat> format);
 
-/** Decodes a LAS file of the versions 1.0 to 1.4, point formats 0 to 10; a LAZ file, too, where the program is
- * built with LASzip. Coordinates come as FLOAT64; further
- * fields are intensity, return_number, number_of_returns, classification, user_data, scan_angle [degrees],
- * point_source_id and, by format, gps_time, red, green, blue and nir.
+/** Decodes a LAS file of the versions 1.0 to 1.4, point formats 0 to 10; a LAZ file, too, where the program
+ * is built with LASzip. Coordinates come as FLOAT64; further fields are intensity, return_number,
+ * number_of_returns, classification, user_data, scan_angle [degrees], point_source_id and, by format,
+ * gps_time, red, green, blue and nir.
  */
 RawCloud decodeLas(std::string_view content);
 
