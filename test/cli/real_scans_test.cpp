@@ -50,6 +50,7 @@ class RealScanTest : public CommandFixture, public testing::WithParamInterface<R
   }
 
   void SetUp() override {
+    CommandFixture::SetUp();
     if (std::getenv("PCL_FFT_GROUND_DATA") == nullptr)
       GTEST_SKIP() << "PCL_FFT_GROUND_DATA names no folder of real scans";
   }
