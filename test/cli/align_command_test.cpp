@@ -72,6 +72,17 @@ TEST_F(AlignCommand, ARefusalIsAResultAndLeavesNoTransform) {
   EXPECT_NE(report["refusal"], "");
 }
 
+TEST_F(AlignCommand, TellsWhatThereIsToSayOfTheFiles) {
+  makeFile("moving.pcd", withEmptyField(contentOf(submap(1))));
+  const Words words{submap(0), pathOf("moving.pcd"), "-o", output(), "--max-object-size", "1"};
+  const std::string remark = pathOf("moving.pcd") + ": its field 'empty' has COUNT 0 and is left out";
+  EXPECT_NE(run(runAlign, words).err.find("warning: " + remark), std::string::npos);
+  const json report = json::parse(contentOf(outputOf("alignment.json")));
+  EXPECT_EQ(report["accepted"], true);
+  EXPECT_EQ(report["warnings"], json::array({remark}));
+  EXPECT_EQ(run(runAlign, with(words, {"--quiet"})).err, "");
+}
+
 TEST_F(AlignCommand, LargeCoordinatesAreThoseOfTheFiles) {
   const Cloud reference = readCloud(submap(0)), moving = readCloud(submap(1));
   const Eigen::Translation3d far_away(500000, 6000000, 0);

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "commands/evaluate/evaluation_files.h"
-
 namespace pcl_fft_ground::cli {
 namespace {
 

@@ -34,6 +34,8 @@ for page in result/segment evaluate align survey; do
 done
 grep -q '<h1>a &lt;b&gt;&amp;.pcd' result/segment.html || fail "the name of the file is not escaped"
 
+grep -q '<th class="number">tpr</th>' result/segment.html || fail "the scores are not in their table"
+
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)
 if [ -z "$browser" ]; then
   echo "SKIPPED: THE PAGES WERE NOT TRIED IN A BROWSER, AS THERE IS NO CHROMIUM"

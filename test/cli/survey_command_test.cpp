@@ -141,6 +141,17 @@ TEST_F(SurveyCommand, WhatIsNoSubmapIsLeftOutAndCounted) {
   EXPECT_THROW(run(runSurvey, {folder, "-o", output()}), WorkError);
 }
 
+TEST_F(SurveyCommand, TellsWhatThereIsToSayOfTheFiles) {
+  const std::string folder = copyOfTwo("remarks");
+  makeFile("remarks/submap_00.pcd", withEmptyField(contentOf(submap(0))));
+  const Words words{folder, "-o", output(), "--max-object-size", "1", "--methods", "fft"};
+  const std::string remark = folder + "/submap_00.pcd: its field 'empty' has COUNT 0 and is left out";
+  EXPECT_NE(run(runSurvey, words).err.find("warning: " + remark), std::string::npos);
+  const json report = json::parse(contentOf(outputOf("survey.json")));
+  EXPECT_EQ(report["warnings"], json::array({remark}));
+  EXPECT_EQ(run(runSurvey, with(words, {"--quiet"})).err, "");
+}
+
 TEST_F(SurveyCommand, AMethodThatCannotRunSaysWhyAndTheOthersGoOn) {
   const Printed printed = survey({"--methods", "graph-cut,planar", "--cell-size", "0.002"});
   EXPECT_NE(printed.out.find("not run: "), std::string::npos) << printed.out;

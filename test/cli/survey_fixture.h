@@ -48,6 +48,14 @@ class SurveyFixture : public CommandFixture {
     return pathOf(name);
   }
 
+  /// A PCD file with one more field, which has no values.
+  static std::string withEmptyField(std::string pcd) {
+    for (const auto& [line, more] :
+         {std::pair{"FIELDS", " empty"}, {"SIZE", " 4"}, {"TYPE", " F"}, {"COUNT", " 0"}})
+      pcd.insert(pcd.find('\n', pcd.find(std::string("\n") + line) + 1), more);
+    return pcd;
+  }
+
   /// Every other point of a sub-map in other coordinates, in double, and without a VIEWPOINT.
   void makeMoved(const std::string& name, const Cloud& cloud,
                  const Eigen::Isometry3d& file_from_points) const {

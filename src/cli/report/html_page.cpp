@@ -83,6 +83,7 @@ std::string shortText(const ordered_json& value) {
 }
 
 std::string tableText(const HtmlTable& table) {
+  constexpr std::size_t MANY_COLUMNS = 12;  // more do not fit on paper in letters of the usual size
   std::vector<bool> numeric(table.header.size(), true);
   for (const std::vector<std::string>& row : table.rows)
     for (std::size_t i = 0; i < numeric.size() && i < row.size(); ++i)
@@ -92,8 +93,8 @@ std::string tableText(const HtmlTable& table) {
     return std::string("<") + tag + (is_number ? " class=\"number\">" : ">") + escaped(text) + "</" + tag +
            ">";
   };
-  std::string text =
-      "<div class=\"wide\"><table><caption>" + escaped(table.caption) + "</caption>\n<thead><tr>";
+  std::string text = std::string("<div class=\"wide") + (table.header.size() > MANY_COLUMNS ? " many" : "") +
+                     "\"><table><caption>" + escaped(table.caption) + "</caption>\n<thead><tr>";
   for (std::size_t i = 0; i < table.header.size(); ++i) text += cell("th", i, table.header[i]);
   text += "</tr></thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : table.rows) {

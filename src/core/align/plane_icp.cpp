@@ -29,6 +29,7 @@ double typicalRoughness(const std::vector<SurfacePatch>& patches) {
   constexpr double PERFECT = 1e-12;
   if (patches.empty()) return PERFECT;
   std::vector<double> roughness;
+  roughness.reserve(patches.size());
   for (const SurfacePatch& patch : patches) roughness.push_back(patch.roughness);
   const auto middle = roughness.begin() + static_cast<std::ptrdiff_t>(roughness.size() / 2);
   std::nth_element(roughness.begin(), middle, roughness.end());

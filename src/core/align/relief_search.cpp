@@ -273,7 +273,8 @@ std::vector<ReliefPeak> ReliefSearch::peaks(std::size_t count) {
   std::vector<ReliefPeak> found, kept;
   if (geometry_.rows == 0) return kept;
   area_ = 0;
-  for (double n = -turns_; n <= turns_; ++n) searchHeading(n * step_, found);
+  const int turns = static_cast<int>(turns_);
+  for (int n = -turns; n <= turns; ++n) searchHeading(n * step_, found);
   std::stable_sort(found.begin(), found.end(), isBetter);
   const double apart = std::max(1.5, std::sqrt(area_)) * geometry_.cell_size;
   const Eigen::Vector3d pivot(bounds_.pivot.x(), bounds_.pivot.y(), 0);

@@ -28,6 +28,7 @@ struct Solution {
 
 std::vector<SegmentMatch> segmentsOf(const std::vector<CandidateMatch>& hypothesis) {
   std::vector<SegmentMatch> matches;
+  matches.reserve(hypothesis.size());
   for (const CandidateMatch& match : hypothesis) matches.push_back(match.segments);
   return matches;
 }
@@ -130,6 +131,7 @@ Attempt alignBySegments(const ScanPair& pair) {
   ConstrainedIcp icp(pair);
   const AlignmentScore score(pair);
   std::vector<Solution> solutions;
+  solutions.reserve(hypotheses.size());
   for (const std::vector<CandidateMatch>& hypothesis : hypotheses)
     solutions.push_back(solve(pair, hypothesis, icp, score));
   const Solution& best = *std::min_element(solutions.begin(), solutions.end(), isBetter);
@@ -138,6 +140,7 @@ Attempt alignBySegments(const ScanPair& pair) {
   });
   if (ambiguous) return {refused(pair, "the segments fit nearly as well elsewhere"), true};
   std::vector<Eigen::Isometry3d> starts;
+  starts.reserve(solutions.size());
   for (const Solution& solution : solutions) starts.push_back(solution.icp.correction);
   return {alignmentOf(pair, best), false, starts};
 }

@@ -38,6 +38,7 @@ std::vector<std::vector<bool>> lying(const std::vector<PlacedSegment>& segments,
                                      const Eigen::Isometry3d& transform,
                                      const std::vector<PlacedSegment>& others, const Sees& sees, float near) {
   std::vector<Eigen::AlignedBox3f> boxes;
+  boxes.reserve(others.size());
   for (const PlacedSegment& other : others) boxes.push_back(boxAround(other, near));
   std::vector<std::vector<bool>> result;
   for (const PlacedSegment& segment : segments) {

@@ -137,6 +137,7 @@ std::vector<std::vector<CandidateMatch>> findHypotheses(std::vector<CandidateMat
   std::vector<std::vector<CandidateMatch>> hypotheses;
   while (hypotheses.size() < parameters.gates.hypotheses) {
     std::vector<double> weights;
+    weights.reserve(candidates.size());
     for (const CandidateMatch& candidate : candidates) weights.push_back(candidate.weight);
     const std::vector<std::size_t> clique = heaviestClique(weights, consistentPairs(candidates, consistency));
     if (clique.size() < least) break;

@@ -8,8 +8,6 @@
 #include <mutex>
 #include <unsupported/Eigen/FFT>
 
-#include "pcl_fft_ground/core/ground/spectrum.h"
-
 namespace pcl_fft_ground::core {
 namespace {
 
@@ -30,6 +28,15 @@ int largestPrimeFactor(int n) {
 }
 
 }  // namespace
+
+Eigen::Index smoothLength(Eigen::Index length) {
+  for (Eigen::Index n = std::max<Eigen::Index>(length, 1);; ++n) {
+    Eigen::Index rest = n;
+    for (const Eigen::Index p : {2, 3, 5})
+      while (rest % p == 0) rest /= p;
+    if (rest == 1) return n;
+  }
+}
 
 struct Fft::Engine {
   Eigen::FFT<double> fft;

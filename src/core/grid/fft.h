@@ -1,10 +1,17 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <complex>
 #include <memory>
 #include <vector>
 
+#include "pcl_fft_ground/core/export.h"
+
 namespace pcl_fft_ground::core {
+
+/// The smallest length of at least `length` whose only prime factors are 2, 3 and 5: one that is transformed
+/// fast. Users have it from core/ground/spectrum.h.
+PCL_FFT_GROUND_CORE_EXPORT Eigen::Index smoothLength(Eigen::Index length);
 
 /** Complex Fourier transform of one length: the only place where the project meets an FFT library.
  *

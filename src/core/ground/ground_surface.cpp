@@ -92,7 +92,7 @@ Labels labelByHeight(const PointsView& points, const GroundSurface& surface, dou
       const float height = points(2, n);
       labels[static_cast<std::size_t>(n)] = height > band.high ? Label::OBJECT : Label::GROUND;
       undecided[count] = n;
-      count += (height >= band.low) & (height <= band.high) ? 1 : 0;
+      count += ((height >= band.low) & (height <= band.high)) ? 1 : 0;
     }
     for (std::size_t u = 0; u < count; ++u) {
       const Eigen::Vector3d p = points.col(undecided[u]).cast<double>();

@@ -189,7 +189,7 @@ SortedPoints::SortedPoints(const PointsView& points, const Bounds& bounds, const
   const float* from = points.data();
   float* const positions = positions_.data();
   for (const std::int32_t cell : cell_of) {
-    float* const to = positions + 3 * next[static_cast<std::size_t>(cell)]++;
+    float* const to = positions + std::size_t{3} * next[static_cast<std::size_t>(cell)]++;
     for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
     from += 3;
   }

@@ -17,7 +17,7 @@ RobustLabels labelRobust(const PointsView& points, const RobustGround& ground) {
       clearance.read(part, begin, block);
       for (std::size_t n = 0; n < block.count; ++n) {
         const bool below = block.below[n] > deepest;
-        labels[begin + n] = below | (block.above[n] > highest) ? Label::OBJECT : Label::GROUND;
+        labels[begin + n] = (below | (block.above[n] > highest)) ? Label::OBJECT : Label::GROUND;
         count_below += below ? 1 : 0;
       }
     }

@@ -30,9 +30,11 @@ Histogram smoothed(const Histogram& counts) {
   constexpr int HALF = 8;
   Histogram result{};
   for (int i = 0; i < BINS; ++i)
-    for (int k = std::max(-HALF, -i); k <= std::min(HALF, BINS - 1 - i); ++k)
+    for (int k = std::max(-HALF, -i); k <= std::min(HALF, BINS - 1 - i); ++k) {
+      const int near = i + k;
       result[static_cast<std::size_t>(i)] +=
-          (0.5 + 0.5 * std::cos(M_PI * k / HALF)) * counts[static_cast<std::size_t>(i + k)];
+          (0.5 + 0.5 * std::cos(M_PI * k / HALF)) * counts[static_cast<std::size_t>(near)];
+    }
   return result;
 }
 

@@ -106,13 +106,4 @@ Eigen::ArrayXXd magnitude(const Spectrum& spectrum) {
   return result;
 }
 
-Eigen::Index smoothLength(Eigen::Index length) {
-  for (Eigen::Index n = std::max<Eigen::Index>(length, 1);; ++n) {
-    Eigen::Index rest = n;
-    for (const Eigen::Index p : {2, 3, 5})
-      while (rest % p == 0) rest /= p;
-    if (rest == 1) return n;
-  }
-}
-
 }  // namespace pcl_fft_ground::core

@@ -53,10 +53,10 @@ HullFilter::HullFilter(const std::vector<Eigen::Vector2d>& hull, const Horizonta
   };
   for (int strip = 0; strip < STRIPS; ++strip) {
     // The polygon is convex: what is inside at both ends of the strip is inside all over it.
-    const auto a = insideAt(strip, -margin), b = insideAt(strip + 1, margin);
-    inside_[static_cast<std::size_t>(strip + 1)] = {
-        static_cast<float>(std::max(a.first, b.first) + margin),
-        static_cast<float>(std::min(a.second, b.second) - margin)};
+    const int next = strip + 1;
+    const auto a = insideAt(strip, -margin), b = insideAt(next, margin);
+    inside_[static_cast<std::size_t>(next)] = {static_cast<float>(std::max(a.first, b.first) + margin),
+                                               static_cast<float>(std::min(a.second, b.second) - margin)};
   }
 }
 

@@ -21,7 +21,7 @@ struct Sheet {
 Sheet principalSheet(const PointsView& points, const Eigen::Vector3d& given) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(summarise(points).covariance);
   const Eigen::Vector3d axis = solver.eigenvectors().col(0);
-  const Eigen::Vector3d variance = solver.eigenvalues();
+  const Eigen::Vector3d& variance = solver.eigenvalues();
   return {axis.dot(given) < 0 ? Eigen::Vector3d(-axis) : axis, variance[0], variance[1], variance[2]};
 }
 

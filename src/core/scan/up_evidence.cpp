@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include "pcl_fft_ground/core/grid/elevation_grid.h"
 #include "scan/point_sample.h"
 
 namespace pcl_fft_ground::core {
@@ -207,7 +206,7 @@ Eigen::ArrayXXd heightsAboveGround(const Envelopes& envelopes) {
 }
 
 /// Number of groups of at least so many flagged cells that touch by a side; the flags are used up.
-int groupsOf(Mask flags, std::size_t fewest) {
+int groupsOf(Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> flags, std::size_t fewest) {
   int groups = 0;
   std::vector<std::pair<Eigen::Index, Eigen::Index>> waiting;
   const auto visit = [&](Eigen::Index i, Eigen::Index j) {

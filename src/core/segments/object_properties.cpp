@@ -50,6 +50,7 @@ std::vector<double> coveredAreas(const Relief& relief, const std::vector<double>
   }
   const double density = inner_columns > 0 ? inner / inner_columns : all / static_cast<double>(counts.size());
   std::vector<double> areas;
+  areas.reserve(counts.size());
   for (const double count : counts) areas.push_back(std::min(1.0, count / density));
   // Amid the object chance alone makes counts differ: there, a column is covered.
   for (std::size_t c = 0; c < counts.size(); ++c) {

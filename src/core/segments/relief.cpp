@@ -134,7 +134,8 @@ void Relief::addColumns(const Blocks& blocks) {
       const double sum = total.floors + static_cast<double>(total.within.sum) / FIXED_POINT;
       height_.push_back(static_cast<float>(divisions_ * sum / total.within.count));
       x_.push_back(static_cast<float>(divisions_ * (block.i - first.i) + sub % 2));
-      y_.push_back(static_cast<float>(divisions_ * (block.j - first.j) + sub / 2));
+      const int row = sub / 2;
+      y_.push_back(static_cast<float>(divisions_ * (block.j - first.j) + row));
       cluster_.push_back(static_cast<std::int32_t>(block.k));
       block_.push_back(static_cast<std::int32_t>(b));
       sub_.push_back(static_cast<std::int8_t>(sub));
@@ -169,8 +170,8 @@ void Relief::connect() {
       const int x = sub_[c] % 2 + STEP_X[d];
       const int y = sub_[c] / 2 + STEP_Y[d];
       const int block_x = floorDivided(x), block_y = floorDivided(y);
-      const VoxelIndex block = around[static_cast<std::size_t>(block_[c])]
-                                     [static_cast<std::size_t>(block_x + 1 + 3 * (block_y + 1))];
+      const int aside = block_x + 1 + 3 * (block_y + 1);
+      const VoxelIndex block = around[static_cast<std::size_t>(block_[c])][static_cast<std::size_t>(aside)];
       const int sub = x - block_x * divisions_ + 2 * (y - block_y * divisions_);
       neighbours_[c][d] =
           block == NO_VOXEL

@@ -152,6 +152,9 @@ void align(const po::variables_map& values) {
                    Eigen::Isometry3d::Identity(),
                    {}};
   pair.guess = initialGuess(values, pair.reference.cloud, pair.moving.cloud);
+  if (!quiet)
+    for (const InputScan* scan : {&pair.reference, &pair.moving})
+      for (const std::string& remark : scan->cloud.remarks) printWarning(scan->path + ": " + remark);
   progress.begin("align", "aligning");
   alignClouds(pair, settings, segmenter);
   progress.begin("write", "writing " + directory);

@@ -43,6 +43,7 @@ std::string alignmentPage(const std::string& directory, const AlignedPair& pair,
                     fixedNumber(100 * report["overlap"].get<double>(), 0) + " %."};
   else
     page.summary = {"Not aligned: " + report["refusal"].get<std::string>()};
+  page.warnings = report["warnings"].get<std::vector<std::string>>();
   page.view_caption = "Both scans in the coordinates of the reference, a part of their points.";
   page.layers = {scanLayer("reference", "#2f6fd0", true, pair.reference.cloud, Eigen::Isometry3d::Identity()),
                  scanLayer("moving, as guessed", "#e0a030", !accepted, pair.moving.cloud, pair.guess)};

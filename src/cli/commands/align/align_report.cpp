@@ -32,6 +32,14 @@ ordered_json matchesOf(const AlignedPair& pair) {
   return matches;
 }
 
+/// What there is to say about the two files, each line with the file's name.
+std::vector<std::string> warningsOf(const AlignedPair& pair) {
+  std::vector<std::string> warnings;
+  for (const InputScan* scan : {&pair.reference, &pair.moving})
+    for (const std::string& remark : scan->cloud.remarks) warnings.push_back(scan->path + ": " + remark);
+  return warnings;
+}
+
 ordered_json crispnessOf(const AlignedPair& pair) {
   const core::Points reference = usablePoints(*pair.reference.cloud.points).points;
   const core::Points moving = usablePoints(*pair.moving.cloud.points).points;
@@ -114,7 +122,8 @@ ordered_json makeAlignmentReport(const AlignedPair& pair, const AlignmentSetting
       {"segments", {{"reference", reference.segments.size()}, {"moving", moving.segments.size()}}},
       {"voxel_size", std::max(reference.voxel_size, moving.voxel_size)},
       {"matches", matchesOf(pair)},
-      {"crispness", crispnessOf(pair)}};
+      {"crispness", crispnessOf(pair)},
+      {"warnings", warningsOf(pair)}};
   report["parameters"] = settings.described;
   report["parameters"]["max-sigma"] =
       core::largestSigma(settings.alignment, std::max(reference.voxel_size, moving.voxel_size));

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/evaluate/evaluation_row.h"
+#include "commands/evaluate/evaluation_table.h"
 #include "io/cloud_file.h"
 #include "methods/segmenter.h"
 #include "pcl_fft_ground/core/ground/labels.h"

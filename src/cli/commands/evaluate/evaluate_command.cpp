@@ -7,7 +7,6 @@
 #include "command_line.h"
 #include "commands/commands.h"
 #include "commands/evaluate/cloud_evaluation.h"
-#include "commands/evaluate/evaluation_files.h"
 #include "commands/evaluate/evaluation_pictures.h"
 #include "commands/evaluate/evaluation_table.h"
 #include "errors.h"

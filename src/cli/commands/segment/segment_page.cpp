@@ -77,7 +77,8 @@ std::string segmentPage(const std::string& directory, const Cloud& cloud, const 
     picture("spectrum.png", "The spectrum of the elevation before and after the low-pass");
 
   if (!report["scores"].is_null())
-    page.tables.push_back(tableOfRecords("Against the labels of the input", {report["scores"]}));
+    page.tables.push_back(
+        tableOfRecords("Against the labels of the input", ordered_json::array({report["scores"]})));
   page.tables.push_back(
       tableOfCsv("Segments, by falling size [m]", fileBytes(directory + "/segments.csv"), MOST_SEGMENTS));
   page.tables.push_back(tableOfParameters("Parameters", report["parameters"]));

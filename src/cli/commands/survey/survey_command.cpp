@@ -254,6 +254,8 @@ void surveyFolders(const po::variables_map& values) {
     reports.push_back(report(task, outcomes.back(), request));
     progress.end();
     for (const LeftOut& file : outcomes.back().left_out) printWarning("left out: " + file.reason);
+    if (!quiet)
+      for (const FileRemark& file : outcomes.back().remarks) printWarning(file.path + ": " + file.remark);
   }
   if (outcomes.size() > 1) {
     outcomes.push_back(pooled(outcomes));

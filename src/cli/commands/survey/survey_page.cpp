@@ -59,6 +59,7 @@ std::string surveyPage(const SurveyRequest& request, const std::vector<SurveyOut
                   std::to_string(whole.edges) + " aligned pairs, " + std::to_string(whole.rejected_edges) +
                   " of them rejected."};
   for (const LeftOut& file : whole.left_out) page.warnings.push_back("left out: " + file.reason);
+  for (const FileRemark& file : whole.remarks) page.warnings.push_back(file.path + ": " + file.remark);
   page.view_caption = "Survey " + request.surveys.front().name +
                       " after global alignment, of large sites a part of the points.";
   page.layers = {siteLayer(request.surveys.front().directory)};

@@ -110,6 +110,12 @@ ordered_json asJson(const std::vector<LeftOut>& left_out) {
   return result;
 }
 
+ordered_json asJson(const std::vector<FileRemark>& remarks) {
+  ordered_json result = ordered_json::array();
+  for (const FileRemark& file : remarks) result.push_back(file.path + ": " + file.remark);
+  return result;
+}
+
 void printPlacement(std::ostream& out, const Placement& placement, std::size_t voxels_before) {
   out << "  " << placement.name << ": " << groupedNumber(static_cast<long long>(placement.voxels))
       << " occupied voxels (" << fixedNumber(core::crispnessChange(voxels_before, placement.voxels), 2)
@@ -144,6 +150,7 @@ ordered_json makeSurveyReport(const SurveyOutcome& outcome, const std::string& m
           {"submaps", outcome.submaps},
           {"left_out", outcome.left_out.size()},
           {"left_out_files", asJson(outcome.left_out)},
+          {"warnings", asJson(outcome.remarks)},
           {"voxel_size", outcome.voxel_sizes},
           {"crispness", asJson(core::crispnessTable(outcome.pairs))},
           {"accuracy", asJson(core::accuracyTable(outcome.pairs))},
@@ -180,6 +187,7 @@ SurveyOutcome pooled(const std::vector<SurveyOutcome>& outcomes) {
   for (const SurveyOutcome& outcome : outcomes) {
     all.submaps += outcome.submaps;
     all.left_out.insert(all.left_out.end(), outcome.left_out.begin(), outcome.left_out.end());
+    all.remarks.insert(all.remarks.end(), outcome.remarks.begin(), outcome.remarks.end());
     all.pairs.insert(all.pairs.end(), outcome.pairs.begin(), outcome.pairs.end());
     all.edges += outcome.edges;
     all.rejected_edges += outcome.rejected_edges;

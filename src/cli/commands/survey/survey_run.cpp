@@ -134,6 +134,7 @@ SurveyOutcome begunOutcome(const SurveyTask& task, const SurveyFolder& survey,
   outcome.name = task.name;
   outcome.submaps = survey.submaps.size();
   outcome.left_out = survey.left_out;
+  outcome.remarks = survey.remarks;
   for (const Submap& submap : survey.submaps) {
     outcome.voxel_sizes[submap.name] = settings.segments.voxel_size.value_or(submap.voxel_size);
     if (!submap.origin.isZero()) outcome.origins[submap.name] = asList(submap.origin);

@@ -44,6 +44,7 @@ struct SurveyOutcome {
   std::string name;
   std::size_t submaps = 0;
   std::vector<LeftOut> left_out;
+  std::vector<FileRemark> remarks;  ///< what there is to say of how the files were read
   std::vector<core::PairResult> pairs;
   nlohmann::ordered_json origins;      ///< by sub-map, what is subtracted from its coordinates, where that is
   nlohmann::ordered_json voxel_sizes;  ///< by sub-map [m]; of a pair the larger of the two is in force

@@ -26,6 +26,7 @@ std::string addSubmap(const std::string& path, const core::NavigationSigmas& sig
   const Cloud cloud = readCloud(path);
   const core::Points points = usablePoints(*cloud.points).points;
   if (points.cols() == 0) throw WorkError(path + ": none of its points is finite; at least one has to be");
+  for (const std::string& remark : cloud.remarks) survey.remarks.push_back({path, remark});
   core::SurveyScan scan = core::surveyScan(points, cloud.viewpoint.asTransform(), sigmas);
   survey.scans.push_back(std::move(scan));
   survey.submaps.push_back(

@@ -40,12 +40,19 @@ struct LeftOut {
   std::string reason;  ///< in a sentence that names the file
 };
 
+/// What a user should know of how a file was read.
+struct FileRemark {
+  std::string path;  ///< of the file
+  std::string remark;
+};
+
 /// A folder of sub-maps.
 struct SurveyFolder {
   std::vector<Submap> submaps;           ///< in the order of their names
   std::vector<core::SurveyScan> scans;   ///< likewise; of the points less their origins
   std::vector<Eigen::Isometry3d> truth;  ///< likewise, if truth.csv gives them: one per sub-map, or empty
   std::vector<LeftOut> left_out;         ///< what cannot be read or holds no finite point
+  std::vector<FileRemark> remarks;       ///< what there is to say of how its files were read
 };
 
 /// The clouds (*.pcd, *.ply, *.las, in any case) in a folder, in the order of their names.
