@@ -20,7 +20,7 @@ tidy() { # REGEX OF FILES CMAKE OPTION...
   # What only GCC knows of.
   sed -i -E 's/ (-fcx-limited-range|-Wno-maybe-uninitialized)//g' "$build/compile_commands.json"
   run-clang-tidy -quiet -extra-arg=-std=c++17 -p "$build" -j "$(cmake/build_jobs.sh)" "$1" >"$build.log" 2>&1 || {
-    grep -E 'error|warning' "$build.log" | sort -u
+    grep -E '(error|warning): ' "$build.log" | sort -u
     echo "clang-tidy found the above; all of its words are in $build.log" >&2
     exit 1
   }

@@ -79,6 +79,7 @@ ReliefFit ReliefIcp::run(const Eigen::Isometry3d& start) const {
     if (pairs.size() < LEAST) break;
     if (iteration == 0) {
       std::vector<double> heights;
+      heights.reserve(pairs.size());
       for (const Pair& pair : pairs) heights.push_back(pair.height);
       correction = Eigen::Translation3d(0, 0, -medianOf(std::move(heights))) * correction;
       continue;

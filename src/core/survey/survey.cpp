@@ -62,6 +62,7 @@ std::vector<PlannedPair> planPairs(const std::vector<SurveyScan>& scans) {
   }
   const std::vector<SubmapPair> chain = chainPairs(centroids);
   std::vector<PlannedPair> pairs;
+  pairs.reserve(chain.size());
   for (const SubmapPair& pair : chain) pairs.push_back({pair, PairKind::CHAIN});
   for (const SubmapPair& pair : otherOverlappingPairs(coverages, poses, chain, LEAST_OVERLAP))
     pairs.push_back({pair, PairKind::OTHER});
@@ -80,6 +81,7 @@ std::vector<PlannedPair> pairsOfNewcomer(std::size_t newcomer, const std::vector
   std::sort(overlaps.begin(), overlaps.end());
   overlaps.resize(std::min(overlaps.size(), MOST_NEIGHBOURS));
   std::vector<PlannedPair> pairs;
+  pairs.reserve(overlaps.size());
   for (const auto& [share, i] : overlaps)
     pairs.push_back({{i, newcomer}, pairs.empty() ? PairKind::CHAIN : PairKind::OTHER});
   return pairs;

@@ -25,6 +25,7 @@ constexpr double REJECTED_WEIGHT = 0.25;    // an edge that counts less is taken
 
 std::vector<Eigen::Isometry3d> navigationOf(const std::vector<SurveyScan>& scans) {
   std::vector<Eigen::Isometry3d> poses;
+  poses.reserve(scans.size());
   for (const SurveyScan& scan : scans) poses.push_back(scan.world_from_scan);
   return poses;
 }
