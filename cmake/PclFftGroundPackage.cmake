@@ -17,7 +17,7 @@ configure_package_config_file(
   NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/pcl_fft_groundConfigVersion.cmake"
   VERSION ${PROJECT_VERSION}
-  COMPATIBILITY SameMinorVersion) # until 1.0, a minor version may break
+  COMPATIBILITY SameMajorVersion) # sources for 0.1 build with 0.2; libraries differ by SOVERSION
 install(FILES
   "${PROJECT_BINARY_DIR}/pcl_fft_groundConfig.cmake"
   "${PROJECT_BINARY_DIR}/pcl_fft_groundConfigVersion.cmake"
