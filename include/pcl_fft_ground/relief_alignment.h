@@ -17,7 +17,7 @@ namespace pcl_fft_ground {
  * The initial guess is that of align(): where navigation puts the source, in the target's frame. All places
  * that navigation allows are searched, by correlation in the frequency domain (core::alignRelief()). A pair
  * that cannot be aligned with confidence is refused: hasConverged() is false, getRefusal() says why, and the
- * final transformation is the guess.
+ * final transformation is the guess. Nothing but a setter throws.
  *
  * The convergence criteria and the correspondences of `pcl::Registration` have no influence. No tree is built
  * over the target unless getFitnessScore() asks for one.

@@ -193,17 +193,6 @@ class AnyCloud : public testing::TestWithParam<unsigned> {
 };
 INSTANTIATE_TEST_SUITE_P(Parts, AnyCloud, testing::Range(0U, 8U));
 
-/// A length that suits the points, whatever their scale: cells of a size given once and for all would be too
-/// many, or would take their time.
-double unitOf(const Cloud& cloud) {
-  constexpr float BEYOND_MEASURE = 1e18F;
-  double extent = 0;
-  for (const Point& p : cloud)
-    for (const float value : p.data)
-      if (std::abs(value) <= BEYOND_MEASURE) extent = std::max(extent, static_cast<double>(std::abs(value)));
-  return extent > 0 ? extent : 1;
-}
-
 TEST_P(AnyCloud, IsSplitByEveryMethod) {
   const std::vector<Method<Point>> methods = everyMethod<Point>();
   forEachCloud([&](const Cloud::ConstPtr& cloud) {

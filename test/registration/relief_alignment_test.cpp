@@ -100,6 +100,22 @@ TEST_F(ReliefAlignmentClass, RefusesWhatNavigationDoesNotAllow) {
   EXPECT_TRUE(relief_.getFinalTransformation().isApprox(guess.matrix().cast<float>()));
 }
 
+/// Seen from above it is a line, and its points lie so close that the cells would be too many.
+TEST_F(ReliefAlignmentClass, AWallIsRefused) {
+  const Cloud::Ptr wall(new Cloud);
+  std::mt19937 random(3);
+  for (int n = 0; n < 50; ++n)
+    wall->emplace_back(n % 2 == 0 ? 0.0F : 1e-30F, static_cast<float>(test::uniform(random, 0, 1)),
+                       static_cast<float>(test::uniform(random, 0, 1)));
+  relief_.setInputSource(wall);
+  relief_.setInputTarget(wall);
+  const Eigen::Isometry3d guess = poseAt(0.1, 0.2, 0.03);
+  ASSERT_NO_THROW(align(guess, TRUTH));
+  EXPECT_FALSE(relief_.hasConverged());
+  EXPECT_NE(relief_.getRefusal().find("cells"), std::string::npos) << relief_.getRefusal();
+  EXPECT_TRUE(relief_.getFinalTransformation().isApprox(guess.matrix().cast<float>()));
+}
+
 TEST_F(ReliefAlignmentClass, SettersAndGettersAgree) {
   relief_.setMaxShift(3);
   EXPECT_EQ(relief_.getMaxShift(), 3);

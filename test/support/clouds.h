@@ -108,4 +108,16 @@ void spoilPoints(CloudT& cloud) {
   cloud.is_dense = false;
 }
 
+/// A length that suits the points, whatever their scale: cells of a size given once and for all would be too
+/// many, or would take their time.
+template <typename PointT>
+double unitOf(const pcl::PointCloud<PointT>& cloud) {
+  constexpr float BEYOND_MEASURE = 1e18F;
+  double extent = 0;
+  for (const PointT& p : cloud)
+    for (const float value : p.data)
+      if (std::abs(value) <= BEYOND_MEASURE) extent = std::max(extent, static_cast<double>(std::abs(value)));
+  return extent > 0 ? extent : 1;
+}
+
 }  // namespace pcl_fft_ground::test

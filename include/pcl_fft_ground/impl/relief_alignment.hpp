@@ -84,7 +84,15 @@ void ReliefAlignment<PointSource, PointTarget>::computeTransformation(PointCloud
       Eigen::Quaterniond(target_from_source.linear()).normalized().toRotationMatrix();
   core::ReliefParameters parameters = parameters_;
   parameters.gates.max_rise = getMaxRise();
-  result_ = core::alignRelief(source, target, level * target_from_source * level.inverse(), parameters);
+  const Eigen::Isometry3d level_guess = level * target_from_source * level.inverse();
+  try {
+    result_ = core::alignRelief(source, target, level_guess, parameters);
+  } catch (const std::exception& problem) {  // points spread so widely that cells were too many
+    result_ = core::ReliefResult();
+    result_.reference_from_moving = result_.best.reference_from_moving = level_guess;
+    result_.refusal = problem.what();
+    PCL_ERROR("[pcl_fft_ground::ReliefAlignment] %s\n", problem.what());
+  }
 
   const auto unlevelled = [&](const Eigen::Isometry3d& pose) { return level.inverse() * pose * level; };
   result_.reference_from_moving = unlevelled(result_.reference_from_moving);

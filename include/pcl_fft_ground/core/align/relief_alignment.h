@@ -61,6 +61,7 @@ struct ReliefResult {
  * \param moving,reference finite points of the scans [m], z roughly up, not far from their origins
  * \param initial_guess reference_from_moving as far as it is known
  * \throws std::invalid_argument if a parameter is out of range or the guess is not finite
+ *         std::length_error if grids as fine as the points would have more than MAX_CELLS cells
  */
 PCL_FFT_GROUND_CORE_EXPORT ReliefResult alignRelief(const PointsView& moving, const PointsView& reference,
                                                     const Eigen::Isometry3d& initial_guess,
