@@ -56,6 +56,14 @@ std::vector<PoseGraphEdge> edgesOf(const std::vector<PairResult>& results, const
   return edges;
 }
 
+std::vector<PoseGraphEdge> consistentOf(const std::vector<PoseGraphEdge>& edges) {
+  const std::vector<bool> is_consistent = consistentEdges(edges);
+  std::vector<PoseGraphEdge> kept;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (is_consistent[e]) kept.push_back(edges[e]);
+  return kept;
+}
+
 /// A part of a survey as a pose graph of its own.
 class Neighbourhood {
  public:
@@ -187,13 +195,16 @@ SurveyPoses solveSurvey(const std::vector<SurveyScan>& scans, const std::vector<
   SurveyPoses poses;
   poses.navigation = navigationOf(scans);
   poses.chained = chainPoses(poses.navigation, results, method);
-  const std::vector<PoseGraphEdge> edges = edgesOf(results, method);
+  const std::vector<PoseGraphEdge> all = edgesOf(results, method);
+  const std::vector<PoseGraphEdge> edges = consistentOf(all);
   std::vector<PosePrior> priors;
   for (std::size_t i = 0; i < scans.size(); ++i) priors.push_back(priorOf(i, scans[i]));
   const PoseGraphSolution solution = solvePoseGraph(poses.navigation, edges, priors);
   poses.global = solution.world_from_node;
-  poses.edges = edges.size();
+  poses.covariances = solution.covariances;
+  poses.edges = all.size();
   poses.rejected_edges =
+      all.size() - edges.size() +
       static_cast<std::size_t>(std::count_if(solution.edge_weights.begin(), solution.edge_weights.end(),
                                              [](double weight) { return weight < REJECTED_WEIGHT; }));
   return poses;

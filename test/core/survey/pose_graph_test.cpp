@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -176,6 +177,72 @@ TEST(PoseGraphEdgeCases, RefusesWrongInput) {
   parameters = {};
   parameters.max_iterations = 0;
   EXPECT_THROW(solvePoseGraph(poses, {edge}, {prior}, parameters), std::invalid_argument);
+}
+
+TEST_P(PoseGraph, RightEdgesAreConsistent) {
+  EXPECT_EQ(consistentEdges(edges_), std::vector<bool>(edges_.size(), true));
+}
+
+/// Shifts edges by as much in the world, so that they agree with each other.
+void shiftTogether(std::vector<PoseGraphEdge>& edges, const Poses& truth,
+                   const std::vector<std::size_t>& which) {
+  const Eigen::Translation3d shift(0.5, 0.2, 0);
+  for (const std::size_t e : which) {
+    const Eigen::Isometry3d& world_from_reference = truth[edges[e].reference];
+    edges[e].reference_from_moving =
+        world_from_reference.inverse() * shift * world_from_reference * edges[e].reference_from_moving;
+  }
+}
+
+// Two of the four edges that join the second transect to the third say the same wrong thing, and contradict
+// the other two, which are joined along the transects and so agree with more.
+TEST_P(PoseGraph, ASetOfWrongEdgesThatAgreeGoesAsAWhole) {
+  join(4, 9);
+  join(5, 10);
+  std::vector<std::size_t> wrong;
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    if (edges_[e].moving == edges_[e].reference + 4 && (edges_[e].reference == 4 || edges_[e].reference == 5))
+      wrong.push_back(e);
+  ASSERT_EQ(wrong.size(), 2U);
+  shiftTogether(edges_, truth_, wrong);
+  const std::vector<bool> kept = consistentEdges(edges_);
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    EXPECT_EQ(kept[e], std::find(wrong.begin(), wrong.end(), e) == wrong.end()) << e;
+}
+
+TEST_P(PoseGraph, SingleWrongEdgesAreFoundWhereverTheyAre) {
+  for (std::size_t wrong = 0; wrong < edges_.size(); ++wrong) {
+    std::vector<PoseGraphEdge> edges = edges_;
+    shiftTogether(edges, truth_, {wrong});
+    const std::vector<bool> kept = consistentEdges(edges);
+    // An edge of the rim is in one square only, and any of that square's four may be the wrong one.
+    EXPECT_NE(std::count(kept.begin(), kept.end(), false), 0) << wrong;
+    EXPECT_LE(std::count(kept.begin(), kept.end(), false), 2) << wrong;
+  }
+}
+
+TEST(ConsistentEdges, InNoCycleStay) {
+  const PoseGraphEdge edge{0, 1, Eigen::Isometry3d::Identity(), covariance(0.01, 0.01)};
+  EXPECT_EQ(consistentEdges({edge}), std::vector<bool>{true});
+  EXPECT_TRUE(consistentEdges({}).empty());
+}
+
+TEST_P(PoseGraph, CovariancesAreThoseOfTheErrors) {
+  const PoseGraphSolution solution = solvePoseGraph(navigation_, edges_, priors_);
+  ASSERT_EQ(solution.covariances.size(), truth_.size());
+  double surprise = 0;
+  for (std::size_t n = 0; n < truth_.size(); ++n) {
+    const Eigen::Isometry3d off = solution.world_from_node[n].inverse() * truth_[n];
+    const Eigen::AngleAxisd turn(off.linear());
+    Vector6d error;
+    error << off.translation(), turn.angle() * turn.axis();
+    surprise += error.dot(solution.covariances[n].llt().solve(error)) / 6;
+    // Better known than by navigation, worse than by one edge.
+    EXPECT_LT(solution.covariances[n](0, 0), 0.01);
+    EXPECT_GT(solution.covariances[n](0, 0), 0.002 * 0.002);
+  }
+  // The errors of all poses are nearly one, so that this is the mean of few.
+  EXPECT_LT(surprise / static_cast<double>(truth_.size()), 3.5);
 }
 
 }  // namespace

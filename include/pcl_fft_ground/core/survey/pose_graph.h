@@ -43,8 +43,26 @@ struct PoseGraphParameters {
 struct PoseGraphSolution {
   std::vector<Eigen::Isometry3d> world_from_node;
   std::vector<double> edge_weights;  ///< per edge how much it counted, 0 to 1
-  bool converged = false;            ///< whether the last step was below a micrometre and a microradian
+  /// Per pose its covariance, of a motion in the node's own frame applied before the transform: by the
+  /// covariances of edges and priors as they are weighed.
+  std::vector<MotionCovariance> covariances;
+  bool converged = false;  ///< whether the last step was below a micrometre and a microradian
 };
+
+/** \brief The edges that agree with each other: a set of which no cycle is open, as large as it can be found.
+ *
+ * Edges that lead from a node back to it have to end where they began. A cycle of two to four edges is open
+ * if it does not, by more than `outlier_deviation` standard deviations an edge. One of its edges then is
+ * wrong: that of which most cycles are open goes first, until none is left; then those come back that
+ * contradict none of the rest. So a set of wrong edges that agree with each other, but with fewer others than
+ * those they contradict, goes as a whole, where a kernel would judge each by itself. (Mangelson et al.,
+ * "Pairwise consistent measurement set maximization", 2018, compare two edges by odometry that is trusted;
+ * here no edge is, and cycles vote.) Edges in no cycle stay.
+ *
+ * \return per edge whether it stays
+ */
+PCL_FFT_GROUND_CORE_EXPORT std::vector<bool> consistentEdges(const std::vector<PoseGraphEdge>& edges,
+                                                             double outlier_deviation = 8.0);
 
 /** \brief Poses that agree best with all edges and priors: nonlinear least squares on SE(3).
  *
