@@ -26,11 +26,20 @@ constexpr double SHARE_FROM_ABOVE = 0.9;
 constexpr double LEAST_DIRECTION = 0.35;  // share that agrees in the worst direction: .45
 constexpr double AS_WELL = 0.95;          // share of the evidence that the planes' pose keeps
 constexpr double NEARLY = 0.7;            // of the best pose's evidence makes another a rival
+// At a first look, by few of the pieces and not yet at rest:
+constexpr double WORTH = 0.5;     // share of the best one's evidence that makes a place worth a second look
+constexpr double HOPELESS = 0.7;  // of the shares above, below which (beyond which) no second look mends it
 
 /// A pose that the surfaces hold.
 struct Candidate {
   IcpResult icp;
   SurfaceEvidence evidence;
+};
+
+/// Shares that the surfaces of one place have.
+struct LeastShares {
+  double agreeing;   ///< of what the surfaces tell
+  double slack = 1;  ///< by which all of them may be missed
 };
 
 Eigen::Vector3d middleOf(const ScanPair& pair) {
@@ -51,9 +60,15 @@ std::vector<Eigen::Isometry3d> startsAround(const ScanPair& pair) {
   return starts;
 }
 
-/// Where ICP comes to from the starts, each place once, the most evidence first.
-std::vector<Candidate> candidatesFrom(const std::vector<Eigen::Isometry3d>& starts, const ScanPair& pair,
-                                      const SurfaceFit& fit) {
+void sortByEvidence(std::vector<Candidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.evidence.evidence > b.evidence.evidence;
+  });
+}
+
+/// Where ICP comes to from the starts at a first look, each place once, the most evidence first.
+std::vector<Candidate> firstLook(const std::vector<Eigen::Isometry3d>& starts, const ScanPair& pair,
+                                 const SurfaceFit& fit) {
   const double voxel = pair.voxelSize();
   const double reach = std::clamp(pair.parameters().gates.max_shift, LEAST_REACH * voxel, MOST_REACH * voxel);
   const auto meet = [&](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -67,15 +82,26 @@ std::vector<Candidate> candidatesFrom(const std::vector<Eigen::Isometry3d>& star
                                    [&](const auto& other) { return meet(near, other); });
     if (known) continue;
     approached.push_back(near);
-    const IcpResult icp = fit.refine(near);
+    const IcpResult icp = fit.refine(near, Pieces::FEW);
+    candidates.push_back({icp, fit.at(icp.correction, Pieces::FEW)});
+  }
+  sortByEvidence(candidates);
+  return candidates;
+}
+
+/// The same places made precise, as far as they are worth it.
+std::vector<Candidate> secondLook(const std::vector<Candidate>& first, const ScanPair& pair,
+                                  const SurfaceFit& fit) {
+  std::vector<Candidate> candidates;
+  for (const Candidate& rough : first) {
+    if (rough.evidence.evidence < WORTH * first.front().evidence.evidence) break;
+    const IcpResult icp = fit.refine(rough.icp.correction);
     const bool met = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-      return meet(icp.correction, other.icp.correction);
+      return fit.displacement(icp.correction, other.icp.correction) < SAME * pair.voxelSize();
     });
     if (!met) candidates.push_back({icp, fit.at(icp.correction)});
   }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.evidence.evidence > b.evidence.evidence;
-  });
+  sortByEvidence(candidates);
   return candidates;
 }
 
@@ -92,16 +118,16 @@ std::string reasonAgainstPlace(const ScanPair& pair, const Eigen::Isometry3d& co
 }
 
 /// Empty if the surfaces agree as those of one place do.
-std::string reasonAgainst(const SurfaceEvidence& evidence, double least_share) {
+std::string reasonAgainst(const SurfaceEvidence& evidence, const LeastShares& least) {
   const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
-  if (evidence.seen < LEAST_SEEN) return "hardly any overlap";
-  if (evidence.share() < least_share)
+  if (evidence.seen < least.slack * LEAST_SEEN) return "hardly any overlap";
+  if (evidence.share() < least.slack * least.agreeing)
     return "only " + percent(evidence.share()) + " of what the surfaces tell agrees, " +
-           percent(least_share) + " are needed";
-  if (evidence.leastShare() < LEAST_DIRECTION)
+           percent(least.agreeing) + " are needed";
+  if (evidence.leastShare() < least.slack * LEAST_DIRECTION)
     return "only " + percent(evidence.leastShare()) + " agrees in the direction held worst, " +
            percent(LEAST_DIRECTION) + " are needed";
-  if (evidence.misplaced > MOST_MISPLACED)
+  if (least.slack * evidence.misplaced > MOST_MISPLACED)
     return "of either scan " + percent(evidence.misplaced) +
            " or more stand where the other has looked through, allowed are " + percent(MOST_MISPLACED);
   return {};
@@ -142,15 +168,19 @@ Alignment alignSurfaces(const ScanPair& pair, const std::vector<Eigen::Isometry3
   const SurfaceFit fit(pair);
   std::vector<Eigen::Isometry3d> starts = startsAround(pair);
   starts.insert(starts.end(), more_starts.begin(), more_starts.end());
-  const std::vector<Candidate> candidates = candidatesFrom(starts, pair, fit);
-  if (candidates.empty()) return refused(pair, "hardly any overlap");
+  LeastShares least{SHARE_OF_SCORE * pair.parameters().min_score};
+  if (fit.isFromAbove()) least.agreeing = std::max(SHARE_FROM_ABOVE, least.agreeing);
+  const std::vector<Candidate> first = firstLook(starts, pair, fit);
+  if (first.empty()) return refused(pair, "hardly any overlap");
+  if (!(first.front().evidence.evidence > 0))
+    return refused(pair, "the surfaces agree no better than unrelated ones");
+  const std::string hopeless = reasonAgainst(first.front().evidence, {least.agreeing, HOPELESS});
+  if (!hopeless.empty()) return refused(pair, hopeless);
+  const std::vector<Candidate> candidates = secondLook(first, pair, fit);
   // If the best lies beyond what navigation allows nothing within is to be believed either.
   const Candidate& best = candidates.front();
   std::string reason = reasonAgainstPlace(pair, best.icp.correction);
-  const double least_share = SHARE_OF_SCORE * pair.parameters().min_score;
-  if (reason.empty())
-    reason = reasonAgainst(best.evidence,
-                           fit.isFromAbove() ? std::max(SHARE_FROM_ABOVE, least_share) : least_share);
+  if (reason.empty()) reason = reasonAgainst(best.evidence, least);
   if (reason.empty() && fit.isFromAbove()) reason = reasonAgainstObjects(pair, best.icp.correction);
   if (reason.empty()) reason = reasonAgainstPrecision(pair, best.icp);
   const bool has_rival = std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {

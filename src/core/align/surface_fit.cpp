@@ -35,6 +35,10 @@ constexpr double NEAR_REACH = 3;    // from which all of them do [voxels]
 constexpr double LAST_REACH = 1.5;  // [voxels]
 constexpr double STEP = 0.75;       // by which the reach shrinks
 constexpr int STEPS = 25, LAST_STEPS = 12, REFINEMENTS = 30;
+
+// The first look at a pose: a right one keeps its evidence, relative to others', to some per cent.
+constexpr std::size_t ONE_OF_FEW = 5;  // pieces that are compared
+constexpr int FEW_REFINEMENTS = 8;
 constexpr double ALONG = 100;   // distances along a surface count so much less, squared
 constexpr double ROBUST = 4;    // the scale of the weights is the reach over this...
 constexpr double NOISES = 1.5;  // ...but no less than so many deviations of the noise
@@ -197,7 +201,8 @@ struct SurfaceFit::Match {
   double tilt = 0;                                      ///< variance of `across` by noise [rad^2]
   bool same_plane = true;        ///< false: both are flat, but face different ways: no measure of the pose
   bool has_counterpart = false;  ///< false: nothing like it is near
-  Sight sight = Sight::UNSEEN;   ///< what the other scan says of the place, where they do not agree
+  bool is_moving = true;         ///< whether the piece is one of the moving scan
+  Eigen::Vector3d placed;        ///< the piece in the frame of the other scan [m]
 
   bool agrees(double voxel) const {
     return has_counterpart && distance * distance < DEVIATIONS * DEVIATIONS * variance &&
@@ -244,10 +249,11 @@ Eigen::Isometry3d SurfaceFit::approach(const Eigen::Isometry3d& start, double re
 }
 
 void SurfaceFit::addMatches(SurfaceModel& from, SurfaceModel& to, const Eigen::Isometry3d& to_from,
-                            std::vector<Match>& found) const {
+                            Pieces pieces, std::vector<Match>& found) const {
   const double voxel = pair_.voxelSize();
-  for (const Eigen::Index n : from.sample()) {
-    const Surfel& piece = from.at(n);
+  const std::size_t one_in = pieces == Pieces::ALL ? 1 : ONE_OF_FEW;
+  for (std::size_t k = 0; k < from.sample().size(); k += one_in) {
+    const Surfel& piece = from.at(from.sample()[k]);
     Match match;
     match.moving = to_from * piece.centre;
     match.normal = match.across = to_from.linear() * piece.normal;
@@ -276,19 +282,18 @@ void SurfaceFit::addMatches(SurfaceModel& from, SurfaceModel& to, const Eigen::I
   }
 }
 
-std::vector<SurfaceFit::Match> SurfaceFit::matches(const Eigen::Isometry3d& correction) const {
+std::vector<SurfaceFit::Match> SurfaceFit::matches(const Eigen::Isometry3d& correction, Pieces pieces) const {
   const Eigen::Isometry3d pose = correction * pair_.initialGuess();
   std::vector<Match> found;
   found.reserve(2 * static_cast<std::size_t>(SAMPLE));
-  addMatches(*moving_, *reference_, pose, found);
+  addMatches(*moving_, *reference_, pose, pieces, found);
   const std::size_t forth = found.size();
-  addMatches(*reference_, *moving_, pose.inverse(), found);
-  const double voxel = pair_.voxelSize(), margin = SEEN_WITHIN * voxel;
+  addMatches(*reference_, *moving_, pose.inverse(), pieces, found);
   for (std::size_t n = 0; n < found.size(); ++n) {
     Match& match = found[n];
-    const bool back = n >= forth;
-    if (!match.agrees(voxel)) match.sight = (back ? moving_ : reference_)->view().at(match.moving, margin);
-    if (!back) continue;
+    match.is_moving = n < forth;
+    match.placed = match.moving;
+    if (match.is_moving) continue;
     const Eigen::Vector3d placed = match.moving;
     match.moving = pose * match.reference;
     match.reference = pose * placed;
@@ -298,19 +303,21 @@ std::vector<SurfaceFit::Match> SurfaceFit::matches(const Eigen::Isometry3d& corr
   return found;
 }
 
-IcpResult SurfaceFit::refine(const Eigen::Isometry3d& start) const {
+IcpResult SurfaceFit::refine(const Eigen::Isometry3d& start, Pieces pieces) const {
   constexpr std::size_t FEWEST_MATCHES = 30;
+  const std::size_t fewest = pieces == Pieces::ALL ? FEWEST_MATCHES : FEWEST_MATCHES / ONE_OF_FEW;
+  const int most = pieces == Pieces::ALL ? REFINEMENTS : FEW_REFINEMENTS;
   const double voxel = pair_.voxelSize();
   const Blocks blocks(pair_.referenceScan().surface);
   IcpResult result;
   result.correction = start;
   for (int n = 0;; ++n) {
-    const std::vector<Match> found = matches(result.correction);
+    const std::vector<Match> found = matches(result.correction, pieces);
     std::size_t count = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Match& match : found)
       if (match.has_counterpart) ++count, sum += match.reference;
-    if (count < FEWEST_MATCHES) return result;
+    if (count < fewest) return result;
     result.centre = sum / static_cast<double>(count);
     std::vector<MotionFit> parts;
     MotionFit all(result.centre), by_noise(result.centre);
@@ -334,21 +341,20 @@ IcpResult SurfaceFit::refine(const Eigen::Isometry3d& start) const {
     result.information = all.information() - by_noise.information();
     result.variance = std::max(1.0, squares / weights);
     result.spread = jackknifeCovariance(parts);
-    if (n == REFINEMENTS) return result;
+    if (n == most) return result;
     const Eigen::Isometry3d motion = all.solve();
     result.correction = motion * result.correction;
     if (displacement(motion, Eigen::Isometry3d::Identity()) < SETTLED * voxel) return result;
   }
 }
 
-SurfaceEvidence SurfaceFit::at(const Eigen::Isometry3d& correction) const {
+SurfaceEvidence SurfaceFit::at(const Eigen::Isometry3d& correction, Pieces pieces) const {
   const double voxel = pair_.voxelSize(), against = std::log(OUTLIERS);
-  const std::vector<Match> found = matches(correction);
+  const std::vector<Match> found = matches(correction, pieces);
   SurfaceEvidence result;
   double seen[] = {0, 0}, looked_through[] = {0, 0};  // of the moving scan's pieces and of the reference's
-  for (std::size_t n = 0; n < found.size(); ++n) {
-    const Match& match = found[n];
-    const std::size_t scan = n < moving_->sample().size() ? 0 : 1;
+  for (const Match& match : found) {
+    const std::size_t scan = match.is_moving ? 0 : 1;
     const double peak = peakOf(match.variance, voxel), most = std::log(peak + OUTLIERS);
     if (!(most > 0)) continue;  // too rough to tell anything
     const Eigen::Matrix3d direction = match.normal * match.normal.transpose();
@@ -358,12 +364,13 @@ SurfaceEvidence SurfaceFit::at(const Eigen::Isometry3d& correction) const {
       result.evidence += evidence;
       result.agreeing += (evidence - against) * direction;
       result.contradicting += (most - evidence) * direction;
-    } else if (match.sight == Sight::EMPTY || match.sight == Sight::SURFACE) {
+    } else {
+      const Sight sight =
+          (match.is_moving ? reference_ : moving_)->view().at(match.placed, SEEN_WITHIN * voxel);
+      if (sight != Sight::EMPTY && sight != Sight::SURFACE) continue;
       result.evidence += against;
       result.contradicting += (most - against) * direction;
-      if (match.sight == Sight::EMPTY) ++looked_through[scan];
-    } else {
-      continue;
+      if (sight == Sight::EMPTY) ++looked_through[scan];
     }
     ++seen[scan];
   }

@@ -76,6 +76,12 @@ struct SurfaceEvidence {
   double leastShare() const;
 };
 
+/// How many of the pieces are compared.
+enum class Pieces {
+  ALL,
+  FEW,  ///< enough to tell whether a pose is worth the rest; what comes of them is sums of a sample
+};
+
 /// Compares and aligns the surfaces of two scans; the poses are corrections of the pair's initial guess.
 class SurfaceFit {
  public:
@@ -87,9 +93,9 @@ class SurfaceFit {
   Eigen::Isometry3d approach(const Eigen::Isometry3d& start, double reach) const;
 
   /// The pose near by of the most evidence (by expectation and maximisation), and how well it is held.
-  IcpResult refine(const Eigen::Isometry3d& start) const;
+  IcpResult refine(const Eigen::Isometry3d& start, Pieces pieces = Pieces::ALL) const;
 
-  SurfaceEvidence at(const Eigen::Isometry3d& correction) const;
+  SurfaceEvidence at(const Eigen::Isometry3d& correction, Pieces pieces = Pieces::ALL) const;
 
   /// Whether either scan is seen from above, as it was not taken from one place.
   bool isFromAbove() const { return moving_->view().isFromAbove() || reference_->view().isFromAbove(); }
@@ -99,8 +105,8 @@ class SurfaceFit {
 
  private:
   struct Match;
-  std::vector<Match> matches(const Eigen::Isometry3d& correction) const;
-  void addMatches(SurfaceModel& from, SurfaceModel& to, const Eigen::Isometry3d& to_from,
+  std::vector<Match> matches(const Eigen::Isometry3d& correction, Pieces pieces) const;
+  void addMatches(SurfaceModel& from, SurfaceModel& to, const Eigen::Isometry3d& to_from, Pieces pieces,
                   std::vector<Match>& found) const;
 
   const ScanPair& pair_;

@@ -61,17 +61,25 @@ std::optional<ViewField::Ray> ViewField::rayTo(const Eigen::Vector3d& place) con
   return Ray{cell(1), side * divisions_ + cell(2), static_cast<float>(ray.norm())};
 }
 
+bool ViewField::areThinlySpread(const PointsView& points, Eigen::Index divisions) {
+  divisions_ = divisions;
+  Mask occupied = Mask::Constant(divisions, 6 * divisions, false);
+  for (Eigen::Index n = 0; n < points.cols(); ++n)
+    if (const std::optional<Ray> ray = rayTo(points.col(n).cast<double>()))
+      occupied(ray->row, ray->col) = true;
+  return static_cast<double>(points.cols()) < IN_CELL * static_cast<double>(occupied.count());
+}
+
+/// The fewest cells, of those on a ladder, that hold few enough points; more cells never hold more.
 Eigen::Index ViewField::divisionsFor(const PointsView& points) {
-  for (divisions_ = FEWEST_CELLS; divisions_ < MOST_CELLS;
-       divisions_ = static_cast<Eigen::Index>(FINER * static_cast<double>(divisions_))) {
-    Mask occupied = Mask::Constant(divisions_, 6 * divisions_, false);
-    for (Eigen::Index n = 0; n < points.cols(); ++n)
-      if (const std::optional<Ray> ray = rayTo(points.col(n).cast<double>()))
-        occupied(ray->row, ray->col) = true;
-    if (static_cast<double>(points.cols()) < IN_CELL * static_cast<double>(occupied.count()))
-      return divisions_;
-  }
-  return MOST_CELLS;
+  std::vector<Eigen::Index> ladder;
+  for (Eigen::Index cells = FEWEST_CELLS; cells < MOST_CELLS;
+       cells = static_cast<Eigen::Index>(FINER * static_cast<double>(cells)))
+    ladder.push_back(cells);
+  ladder.push_back(MOST_CELLS);
+  const auto found = std::partition_point(
+      ladder.begin(), ladder.end() - 1, [&](Eigen::Index cells) { return !areThinlySpread(points, cells); });
+  return *found;
 }
 
 /// Lets every cell know what its neighbours hold: on the same side of the cube, where there is one.

@@ -47,6 +47,8 @@ class ViewField {
   };
   std::optional<Ray> rayTo(const Eigen::Vector3d& place) const;
   Eigen::Index divisionsFor(const PointsView& points);
+  /// Whether so many cells a side hold few points each; sets divisions_.
+  bool areThinlySpread(const PointsView& points, Eigen::Index divisions);
   void spread();
 
   std::optional<Eigen::Vector3d> sensor_;
