@@ -51,6 +51,7 @@ void check(const Eigen::Isometry3d& guess, const ReliefParameters& p) {
   positive("max_rise", p.gates.max_rise);
   positive("max_tilt", p.gates.max_tilt);
   positive("cell_size", p.cell_size.value_or(1));
+  positive("max_sigma", p.max_sigma.value_or(1));
   require(p.gates.max_turn > 0 && p.gates.max_turn <= 180, "max_turn", p.gates.max_turn,
           "above 0 to 180 degrees");
   if (!guess.matrix().allFinite()) throw std::invalid_argument("the initial guess is not finite");
@@ -214,14 +215,16 @@ double largestTurn(const Matrix6d& covariance) {
 }
 
 /// Empty if the best pose is to be believed.
-std::string reasonAgainst(const ReliefResult& result, const SearchGates& gates) {
+std::string reasonAgainst(const ReliefResult& result, const ReliefParameters& parameters) {
+  const SearchGates& gates = parameters.gates;
   const ReliefPose& best = result.best;
   if (best.residual > LARGEST_RESIDUAL)
     return sentence("what is left between the surfaces", best.residual, "allowed are", LARGEST_RESIDUAL,
                     " of what is expected");
   if (best.evidence < LEAST_EVIDENCE)
     return sentence("the evidence of the relief", best.evidence, "needed are", LEAST_EVIDENCE, "");
-  const double most = LARGEST_DEVIATION * result.spacing;
+  const double allowed = LARGEST_DEVIATION * result.spacing;
+  const double most = std::min(allowed, parameters.max_sigma.value_or(allowed));
   if (result.deviation > most)
     return sentence("the predicted deviation at the edge of the overlap", result.deviation, "allowed are",
                     most, " m");
@@ -291,7 +294,7 @@ ReliefResult alignRelief(const PointsView& moving, const PointsView& reference,
   }
   result.covariance = covarianceAboutOrigin(*covariance, best.fit.centre);
   result.deviation = deviationAtDistance(*covariance, best.fit.radius);
-  result.refusal = reasonAgainst(result, parameters.gates);
+  result.refusal = reasonAgainst(result, parameters);
   if (!result.refusal.empty()) return result;
   result.accepted = true;
   result.reference_from_moving = result.best.reference_from_moving;

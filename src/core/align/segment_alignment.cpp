@@ -17,6 +17,17 @@ constexpr double REPEATED_GATE = 3;  // after segments were associated anew [vox
 constexpr int ASSOCIATIONS = 2;
 constexpr double SAME_PLACE = 2;  // solutions that differ by less are the same [voxels]
 constexpr double NEARLY = 0.6;    // share of the best one's merit that makes another a rival
+// Places elsewhere. Chosen on lattices of equal half spheres (seed 21) and on wrecks and pipes (seeds 61,
+// 62), which have, of what could agree beyond chance: right poses .89 at least, wrong ones on lattices .30 at
+// most.
+constexpr double LEAST_BEYOND_CHANCE = 0.5;
+constexpr Eigen::Index AT_A_GLANCE = 20;  // one in so many object points tells what agrees by chance...
+constexpr double WORTH = 0.6;             // ...and, by its share of the best one's, what is worth a solution
+constexpr std::size_t MOST_PLACES = 24;   // that are glanced at, those with most segments on each other first
+constexpr std::size_t MOST_RIVALS = 3;    // that are solved, the best first
+constexpr double AS_WELL = 0.85;  // share of the best one's that makes another a rival, whatever it fails
+constexpr int BY_CHANCE = 12;     // places around a pose that tell what agrees by chance...
+constexpr double NEAREST = 6, FARTHEST = 16;  // ...so far from it [voxels]
 
 /// A hypothesis that ICP has made precise.
 struct Solution {
@@ -33,6 +44,10 @@ std::vector<SegmentMatch> segmentsOf(const std::vector<CandidateMatch>& hypothes
   return matches;
 }
 
+std::string percent(double share) {
+  return std::to_string(std::lround(100 * share)) + " %";
+}
+
 std::string tooFew(std::size_t matches, const AlignmentParameters& parameters) {
   return std::to_string(matches) + " segments could be matched, " + std::to_string(parameters.min_matches) +
          " are needed";
@@ -43,8 +58,8 @@ std::string reasonAgainst(const ScanPair& pair, const Solution& solution) {
     return tooFew(solution.matches.size(), pair.parameters());
   const double score = solution.agreement.score;
   if (score < pair.parameters().min_score)
-    return "only " + std::to_string(std::lround(100 * score)) + " % of the objects seen by both agree, " +
-           std::to_string(std::lround(100 * pair.parameters().min_score)) + " % are needed";
+    return "only " + percent(score) + " of the objects seen by both agree, " +
+           percent(pair.parameters().min_score) + " are needed";
   return reasonAgainst(pair, solution.icp);
 }
 
@@ -83,12 +98,59 @@ bool isBetter(const Solution& a, const Solution& b) {
   return meritOf(a) > meritOf(b);
 }
 
-/// True if another solution is nearly as good and elsewhere: things repeat themselves.
-bool contradicts(const Solution& other, const Solution& best, double voxel_size) {
-  if (!best.refusal.empty() || !other.refusal.empty()) return false;
+/** How much of what two scans could agree on beyond chance they do: 1 all of it, 0 no more than anywhere.
+ *
+ * Where objects stand densely most of their points have others near wherever they are laid.
+ */
+class BeyondChance {
+ public:
+  BeyondChance(const AlignmentScore& score, const Eigen::Isometry3d& pose, double voxel_size) {
+    constexpr double GOLDEN_ANGLE = 2.39996322972865332;
+    for (int n = 0; n < BY_CHANCE; ++n) {
+      const double distance = voxel_size * (NEAREST + (FARTHEST - NEAREST) * n / (BY_CHANCE - 1));
+      const Eigen::AngleAxisd heading(n * GOLDEN_ANGLE, Eigen::Vector3d::UnitZ());
+      const Eigen::Translation3d away(heading * Eigen::Vector3d(distance, 0, 0));
+      chance_ += score.of(away * pose, AT_A_GLANCE).score / BY_CHANCE;
+    }
+  }
+
+  /// \param agreement share of the objects seen by both that agree
+  double operator()(double agreement) const { return (agreement - chance_) / std::max(1e-9, 1 - chance_); }
+  double byChance() const { return chance_; }
+
+ private:
+  double chance_ = 0;
+};
+
+/// True if another solution is nearly as good and elsewhere: things repeat themselves. Where it fits as well
+/// it does not matter whether it is precise enough to be accepted or just misses a gate.
+bool contradicts(const ScanPair& pair, const Solution& other, const Solution& best,
+                 const BeyondChance& beyond) {
+  if (other.matches.size() < pair.parameters().min_matches) return false;
   const Eigen::Vector3d place = best.icp.centre;
   const Eigen::Vector3d elsewhere = other.icp.correction * (best.icp.correction.inverse() * place);
-  return (elsewhere - place).norm() > SAME_PLACE * voxel_size && meritOf(other) > NEARLY * meritOf(best);
+  if ((elsewhere - place).norm() <= SAME_PLACE * pair.voxelSize()) return false;
+  if (meritOf(other) <= NEARLY * meritOf(best)) return false;
+  const bool as_well = beyond(other.agreement.score) > AS_WELL * beyond(best.agreement.score);
+  return other.refusal.empty() || (as_well && reasonAgainstMotion(pair, other.icp).empty());
+}
+
+/// Where the scan lies nearly as well as in the best pose, at a glance, the best first.
+std::vector<Eigen::Isometry3d> rivalPlaces(const ScanPair& pair, const Solution& best,
+                                           const AlignmentScore& score, const BeyondChance& beyond) {
+  std::vector<std::pair<double, Eigen::Isometry3d>> places;
+  for (const Eigen::Isometry3d& place :
+       placesElsewhere(pair, best.icp.correction, best.icp.centre, MOST_PLACES)) {
+    const double glance = beyond(score.of(place, AT_A_GLANCE).score);
+    if (glance > WORTH * beyond(best.agreement.score)) places.emplace_back(glance, place);
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  places.resize(std::min(places.size(), MOST_RIVALS));
+  std::vector<Eigen::Isometry3d> rivals;
+  rivals.reserve(places.size());
+  for (const auto& [glance, place] : places) rivals.push_back(place);
+  return rivals;
 }
 
 Alignment alignmentOf(const ScanPair& pair, const Solution& solution) {
@@ -122,10 +184,22 @@ struct Attempt {
   std::vector<Eigen::Isometry3d> starts = {};
 };
 
+/// Whether one of the solutions, or of those that come from other places, is nearly as good.
+bool hasRival(const ScanPair& pair, const Solution& best, const std::vector<Solution>& solutions,
+              const BeyondChance& beyond, ConstrainedIcp& icp, const AlignmentScore& score) {
+  const auto is_rival = [&](const Solution& other) { return contradicts(pair, other, best, beyond); };
+  if (std::any_of(solutions.begin(), solutions.end(), is_rival)) return true;
+  const std::vector<Eigen::Isometry3d> places = rivalPlaces(pair, best, score, beyond);
+  return std::any_of(places.begin(), places.end(), [&](const Eigen::Isometry3d& place) {
+    return is_rival(solveFrom(pair, place, icp, score));
+  });
+}
+
 Attempt alignBySegments(const ScanPair& pair) {
   if (pair.moving().empty()) return {refused(pair, "the moving scan has no segments")};
   if (pair.reference().empty()) return {refused(pair, "the reference has no segments")};
-  const auto hypotheses = findHypotheses(findCandidates(pair), pair.parameters(), pair.voxelSize());
+  const std::vector<CandidateMatch> candidates = findCandidates(pair);
+  const auto hypotheses = findHypotheses(candidates, pair.parameters(), pair.voxelSize());
   if (hypotheses.empty()) return {refused(pair, tooFew(0, pair.parameters()))};
   if (pair.parameters().matching == Matching::PLAIN) return {alignPlainly(pair, hypotheses.front())};
   ConstrainedIcp icp(pair);
@@ -134,32 +208,29 @@ Attempt alignBySegments(const ScanPair& pair) {
   solutions.reserve(hypotheses.size());
   for (const std::vector<CandidateMatch>& hypothesis : hypotheses)
     solutions.push_back(solve(pair, hypothesis, icp, score));
-  const Solution& best = *std::min_element(solutions.begin(), solutions.end(), isBetter);
-  const bool ambiguous = std::any_of(solutions.begin(), solutions.end(), [&](const Solution& other) {
-    return contradicts(other, best, pair.voxelSize());
-  });
-  if (ambiguous) return {refused(pair, "the segments fit nearly as well elsewhere"), true};
+  Solution best = *std::min_element(solutions.begin(), solutions.end(), isBetter);
+  if (best.refusal.empty()) {
+    const BeyondChance beyond(score, best.icp.correction, pair.voxelSize());
+    if (beyond(best.agreement.score) < LEAST_BEYOND_CHANCE)
+      best.refusal = percent(best.agreement.score) + " of the objects seen by both agree, but " +
+                     percent(beyond.byChance()) + " do anywhere";
+    else if (hasRival(pair, best, solutions, beyond, icp, score))
+      return {refused(pair, "the segments fit nearly as well elsewhere"), true};
+  }
   std::vector<Eigen::Isometry3d> starts;
   starts.reserve(solutions.size());
   for (const Solution& solution : solutions) starts.push_back(solution.icp.correction);
   return {alignmentOf(pair, best), false, starts};
 }
 
-/// Share of the occupied voxels that objects have.
-double shareOfObjects(const ScanSegments& scan) {
-  return static_cast<double>(scan.objects.cols()) /
-         static_cast<double>(std::max<Eigen::Index>(scan.surface.cols(), 1));
-}
-
-/// What the relief of the ground says, unless objects stand on it: seen from other places they have other
-/// sides, and the tops of a wood are no relief (two flight lines over one ended 0.7 m off, by eight times the
-/// deviation predicted).
+/// What the relief of the ground says, unless objects stand on it.
 Alignment alignByRelief(const ScanPair& pair) {
-  constexpr double BARE = 0.1;
-  if (std::max(shareOfObjects(pair.movingScan()), shareOfObjects(pair.referenceScan())) > BARE)
+  if (std::max(shareOfObjects(pair.movingScan()), shareOfObjects(pair.referenceScan())) >
+      MOST_OBJECTS_ON_RELIEF)
     return refused(pair, "there are objects, and it is asked of bare ground only");
   ReliefParameters parameters;
   parameters.gates = pair.parameters().gates;
+  parameters.max_sigma = pair.parameters().max_sigma;
   const ReliefResult relief =
       alignRelief(pair.movingScan().relief, pair.referenceScan().relief, pair.initialGuess(), parameters);
   if (!relief.accepted) return refused(pair, relief.refusal);
@@ -178,6 +249,11 @@ Alignment alignByRelief(const ScanPair& pair) {
 }
 
 }  // namespace
+
+double shareOfObjects(const ScanSegments& scan) {
+  return static_cast<double>(scan.objects.cols()) /
+         static_cast<double>(std::max<Eigen::Index>(scan.surface.cols(), 1));
+}
 
 SearchGates gatesOf(SearchMode mode) {
   SearchGates gates;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -23,6 +24,7 @@ constexpr double LEAST_DISTANCE = 0.2;  // [voxels]
 constexpr double TOLERANCE = 3;         // by which distances between matches may differ [voxels]
 constexpr double RISE_PER_LENGTH = 0.05;
 constexpr std::size_t MAX_CANDIDATES = 600;
+constexpr double ELSEWHERE = 3;  // shifts that differ by less are one [voxels]
 
 double ratio(double a, double b) {
   return std::max(a, b) > 0 ? std::min(a, b) / std::max(a, b) : 1;
@@ -111,7 +113,59 @@ Adjacency consistentPairs(const std::vector<CandidateMatch>& candidates, const C
   return joined;
 }
 
+/// The shifts of a posed scan, in order, that put the centroid of a segment on that of another, within what
+/// navigation allows.
+std::vector<Eigen::Vector3d> shiftsOfSegments(const ScanPair& pair, const Eigen::Isometry3d& pose,
+                                              const Eigen::Vector3d& centre) {
+  const SearchGates& gates = pair.parameters().gates;
+  const Eigen::Vector3d moved = centre - pose.inverse() * centre;
+  const double farthest = gates.max_shift + ELSEWHERE * pair.voxelSize();
+  std::vector<Eigen::Vector3d> shifts;
+  for (const PlacedSegment& a : pair.moving())
+    for (const PlacedSegment& b : pair.reference()) {
+      const Eigen::Vector3d shift = b.centroid - pose * a.centroid;
+      const Eigen::Vector3d total = moved + shift;
+      if (total.head<2>().norm() < farthest && std::abs(total.z()) < gates.max_rise) shifts.push_back(shift);
+    }
+  std::sort(shifts.begin(), shifts.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  });
+  return shifts;
+}
+
+/// How many of the shifts, which are in order, are near each of them.
+std::vector<std::size_t> supportOf(const std::vector<Eigen::Vector3d>& shifts, double near) {
+  std::vector<std::size_t> support(shifts.size(), 1);
+  for (std::size_t a = 0; a < shifts.size(); ++a)
+    for (std::size_t b = a + 1; b < shifts.size() && shifts[b].x() - shifts[a].x() < near; ++b)
+      if ((shifts[b] - shifts[a]).norm() < near) ++support[a], ++support[b];
+  return support;
+}
+
 }  // namespace
+
+std::vector<Eigen::Isometry3d> placesElsewhere(const ScanPair& pair, const Eigen::Isometry3d& pose,
+                                               const Eigen::Vector3d& centre, std::size_t most) {
+  const double near = ELSEWHERE * pair.voxelSize();
+  const std::vector<Eigen::Vector3d> shifts = shiftsOfSegments(pair, pose, centre);
+  const std::vector<std::size_t> support = supportOf(shifts, near);
+  std::vector<std::size_t> order(shifts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return support[a] > support[b]; });
+  std::vector<Eigen::Vector3d> taken{Eigen::Vector3d::Zero()};
+  std::vector<Eigen::Isometry3d> places;
+  for (const std::size_t n : order) {
+    if (places.size() >= most) break;
+    const bool is_taken = std::any_of(taken.begin(), taken.end(), [&](const Eigen::Vector3d& other) {
+      return (shifts[n] - other).norm() < near;
+    });
+    if (is_taken) continue;
+    taken.push_back(shifts[n]);
+    places.emplace_back(Eigen::Translation3d(shifts[n]) * pose);
+  }
+  return places;
+}
 
 std::vector<CandidateMatch> findCandidates(const ScanPair& pair) {
   const AlignmentParameters& parameters = pair.parameters();

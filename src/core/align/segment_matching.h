@@ -58,6 +58,16 @@ std::vector<std::vector<CandidateMatch>> findHypotheses(std::vector<CandidateMat
                                                         const AlignmentParameters& parameters,
                                                         double voxel_size);
 
+/** Where else a pose puts segments on segments, whatever these look like: every place at which a pattern
+ * repeats itself, at the same heading, is one of these.
+ *
+ * \param centre of what moves, as the pose has it; a place is left out if it takes that farther from where
+ * the initial guess has it than navigation allows \return corrections of the initial guess, each the pose and
+ * a shift of three voxels at least, at most so many, the one with the most segments on each other first
+ */
+std::vector<Eigen::Isometry3d> placesElsewhere(const ScanPair& pair, const Eigen::Isometry3d& pose,
+                                               const Eigen::Vector3d& centre, std::size_t most);
+
 /// Correction of the initial guess (yaw and shift) that the matches ask for.
 Eigen::Isometry3d fitMatches(const std::vector<CandidateMatch>& matches);
 

@@ -24,8 +24,8 @@ constexpr Eigen::Index SCORE_SAMPLE = 3000;  // points of each scan
 /// Adds the points that the other scan has seen, and those that agree with it.
 template <typename Sees>
 void count(const Points& sample, const Eigen::Isometry3d& transform, const NearestNeighbours& search,
-           const Sees& sees, float near, std::size_t& seen, std::size_t& agreeing) {
-  for (Eigen::Index n = 0; n < sample.cols(); ++n) {
+           const Sees& sees, float near, Eigen::Index one_in, std::size_t& seen, std::size_t& agreeing) {
+  for (Eigen::Index n = 0; n < sample.cols(); n += one_in) {
     const Eigen::Vector3d point = transform * sample.col(n).cast<double>();
     if (!sees(point)) continue;
     ++seen;
@@ -49,16 +49,17 @@ AlignmentScore::AlignmentScore(const ScanPair& pair)
       moving_search_(pair.parameters().neighbours(moving_, pair.voxelSize())),
       reference_search_(pair.parameters().neighbours(pair.referenceScan().objects, pair.voxelSize())) {}
 
-Agreement AlignmentScore::of(const Eigen::Isometry3d& correction) const {
+Agreement AlignmentScore::of(const Eigen::Isometry3d& correction, Eigen::Index one_in) const {
   const auto near = static_cast<float>(NEAR * pair_.voxelSize());
   std::size_t seen = 0;
   std::size_t agreeing = 0;
   count(
       moving_sample_, correction, *reference_search_,
-      [this](const Eigen::Vector3d& place) { return pair_.referenceSees(place); }, near, seen, agreeing);
+      [this](const Eigen::Vector3d& place) { return pair_.referenceSees(place); }, near, one_in, seen,
+      agreeing);
   count(
       reference_sample_, correction.inverse(), *moving_search_,
-      [this](const Eigen::Vector3d& place) { return pair_.movingSees(place); }, near, seen, agreeing);
+      [this](const Eigen::Vector3d& place) { return pair_.movingSees(place); }, near, one_in, seen, agreeing);
   if (seen == 0) return {};
   return {static_cast<double>(agreeing) / static_cast<double>(seen), seen};
 }

@@ -27,7 +27,8 @@ class AlignmentScore {
  public:
   explicit AlignmentScore(const ScanPair& pair);
 
-  Agreement of(const Eigen::Isometry3d& correction) const;
+  /// \param one_in of so many points of the samples: 1 all of them
+  Agreement of(const Eigen::Isometry3d& correction, Eigen::Index one_in = 1) const;
 
  private:
   const ScanPair& pair_;

@@ -114,15 +114,34 @@ TEST(SegmentAlignment, IdenticalScansStayWhereTheyAre) {
   EXPECT_GT(result.overlap, 0.99);
 }
 
-TEST(SegmentAlignment, OfALatticeOfOneShapeIsRightOrRefused) {
+/// Stones of one shape at the places of a square lattice.
+StoneSite latticeOf(const Eigen::Vector3d& semi_axes, double pitch, double yaw) {
   StoneSite lattice;
-  for (int n = 0; n < 80; ++n)
-    lattice.push_back({{0.6 * (n % 10) - 2.7, 0.6 * (n / 10) - 2.1}, {0.15, 0.1, 0.12}, 0.3});
+  const int count = static_cast<int>(6 / pitch);
+  for (int n = 0; n < count * count; ++n)
+    lattice.push_back({{pitch * (n % count) - 3, pitch * (n / count) - 3}, semi_axes, yaw});  // NOLINT
+  return lattice;
+}
+
+TEST(SegmentAlignment, OfALatticeOfOneShapeIsRightOrRefused) {
+  const StoneSite lattice = latticeOf({0.15, 0.1, 0.12}, 0.6, 0.3);
   const ScanSegments moving = describe(lattice, MOVING, 1), reference = describe(lattice, REFERENCE, 2);
   for (const double shift : {0.0, 0.1, 0.2, 0.3, 0.4}) {
     SCOPED_TRACE(shift);
     const Alignment result = alignScans(moving, reference, guessOff(shift, 0, 0));
     EXPECT_TRUE(!result.accepted || errorOf(result, TRUTH) < 0.05) << errorOf(result, TRUTH);
+  }
+}
+
+// Navigation allows several places of the lattice, and headings at which no place fits.
+TEST(SegmentAlignment, OfADenseLatticeNoneIsAccepted) {
+  const StoneSite lattice = latticeOf({0.14, 0.14, 0.14}, 0.42, 0);
+  const ScanSegments moving = describe(lattice, MOVING, 1, 0.03);
+  const ScanSegments reference = describe(lattice, REFERENCE, 2, 0.03);
+  for (const double turn : {0.0, 5.0, -12.0, 16.0}) {
+    SCOPED_TRACE(turn);
+    const Alignment result = alignScans(moving, reference, guessOff(0.1, 0.15, turn), withoutFallback());
+    EXPECT_FALSE(result.accepted) << result.score;
   }
 }
 

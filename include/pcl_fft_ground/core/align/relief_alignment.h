@@ -12,12 +12,20 @@
 
 namespace pcl_fft_ground::core {
 
+/// Share of a scan's voxels that objects may have where its relief is asked: they are no relief, as from
+/// other places they have other sides (two flight lines over a wood came 0.7 m off, by eight times the
+/// deviation predicted). alignRelief() sees points only, and leaves it to its callers.
+constexpr double MOST_OBJECTS_ON_RELIEF = 0.1;
+
 /** Settings of alignRelief(): what navigation allows. All else follows from the spacing, the noise and the
  * extent of the scans. */
 struct ReliefParameters {
   SearchGates gates;  ///< how far off the initial guess may be; `hypotheses` is not used
   std::optional<double>
       cell_size;  ///< side of the finest cells [m], > 0; 2.4 spacings of the points if not set
+  /// Largest deviation predicted at the edge of the overlap that is asked for [m], > 0; 0.4 spacings are
+  /// allowed at most, whether it is set or not.
+  std::optional<double> max_sigma;
 };
 
 /// A place where the relief of two scans fits better than around it.

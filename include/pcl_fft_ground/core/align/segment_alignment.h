@@ -66,7 +66,7 @@ struct AlignmentParameters {
   double min_score = 0.80;
   /// The precision that is asked for, whatever the resolution [m], > 0: the largest standard deviation
   /// predicted and, by segments, the largest root mean square of the distances left between the surfaces. If
-  /// not set, largestSigma() of the scans' voxels.
+  /// not set, largestSigma() of the scans' voxels. By relief never more than ReliefParameters says.
   std::optional<double> max_sigma;
   NearestNeighboursFactory neighbours = columnNeighbours;  ///< how neighbours are searched
 };
@@ -105,6 +105,9 @@ struct Alignment {
    */
   Matrix6d covariance = Matrix6d::Zero();
 };
+
+/// Share of the occupied voxels of a scan that objects have, [0, 1].
+PCL_FFT_GROUND_CORE_EXPORT double shareOfObjects(const ScanSegments& scan);
 
 /** Aligns two overlapping scans by their segments: S-ICP (Douillard et al., ICRA 2012).
  *
