@@ -9,6 +9,7 @@
 
 #include "pcl_fft_ground/core/align/relief_alignment.h"
 #include "pcl_fft_ground/registration_export.h"
+#include "pcl_fft_ground/scan_describer.h"
 
 namespace pcl_fft_ground {
 
@@ -18,6 +19,10 @@ namespace pcl_fft_ground {
  * that navigation allows are searched, by correlation in the frequency domain (core::alignRelief()). A pair
  * that cannot be aligned with confidence is refused: hasConverged() is false, getRefusal() says why, and the
  * final transformation is the guess. Nothing but a setter throws.
+ *
+ * Bare ground is asked for: where an alignment would be accepted the objects on either scan are found by
+ * FFTGroundSegmentation, and if they have more than setMaxObjectShare() of the voxels the pair is refused, as
+ * objects seen from other places have other sides and are no relief.
  *
  * The convergence criteria and the correspondences of `pcl::Registration` have no influence. No tree is built
  * over the target unless getFitnessScore() asks for one.
@@ -51,6 +56,16 @@ class ReliefAlignment : public pcl::Registration<PointSource, PointTarget> {
   void setCellSize(double size);
   double getCellSize() const { return parameters_.cell_size.value_or(0); }
 
+  /// Largest share of a scan's voxels that objects may have, 0 to 1. Default 0.1; with 1 no objects are
+  /// looked for, and what stands on the ground counts as relief: wrong poses then can be accepted.
+  void setMaxObjectShare(double share);
+  double getMaxObjectShare() const { return max_object_share_; }
+
+  /// Largest deviation predicted at the edge of the overlap that is asked for [m], at least 0. Default 0: 0.4
+  /// times the spacing of the points, which is allowed at most.
+  void setMaxSigma(double sigma);
+  double getMaxSigma() const { return parameters_.max_sigma.value_or(0); }
+
   /// Direction of positive elevation in both frames, any finite length above 0. Default +z.
   void setUpDirection(const Eigen::Vector3d& up);
   Eigen::Vector3d getUpDirection() const { return up_direction_; }
@@ -71,6 +86,8 @@ class ReliefAlignment : public pcl::Registration<PointSource, PointTarget> {
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
  private:
+  std::string reasonAgainstObjects() const;
+
   using Base::converged_;
   using Base::final_transformation_;
   using Base::indices_;
@@ -81,6 +98,7 @@ class ReliefAlignment : public pcl::Registration<PointSource, PointTarget> {
 
   core::ReliefParameters parameters_;
   std::optional<double> max_rise_;
+  double max_object_share_ = core::MOST_OBJECTS_ON_RELIEF;
   Eigen::Vector3d up_direction_ = Eigen::Vector3d::UnitZ();
   core::ReliefResult result_;
 };

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,14 @@ class ScanDescriber {
   void setUpDirection(const Eigen::Vector3d& up);
   Eigen::Vector3d getUpDirection() const { return up_direction_; }
 
+  /** Where the sensor stood, in the frame of the cloud [m]: alignment then judges by ray what the scan could
+   * have seen. A segmentation is told so, too, that which was set included. Nothing (the default): a sensor
+   * at the origin is found where the points show it, and other scans are looked at from above. \throws
+   * pcl::PCLException for a place that is not finite
+   */
+  void setSensorPosition(const std::optional<Eigen::Vector3d>& position);
+  const std::optional<Eigen::Vector3d>& getSensorPosition() const { return sensor_position_; }
+
   /// True if the clusters are not those of voxel contact.
   bool hasOwnClusters() const { return clusterer_ || !clusters_.empty(); }
 
@@ -88,6 +97,7 @@ class ScanDescriber {
   Clusters clusters_;
   core::SegmentParameters parameters_;
   Eigen::Vector3d up_direction_ = Eigen::Vector3d::UnitZ();
+  std::optional<Eigen::Vector3d> sensor_position_;
   std::string error_;
 };
 

@@ -109,6 +109,16 @@ class SegmentICP : public pcl::Registration<PointSource, PointTarget> {
   void setUpDirection(const Eigen::Vector3d& up);
   Eigen::Vector3d getUpDirection() const { return source_describer_.getUpDirection(); }
 
+  /// Where the sensors stood, each in the frame of its cloud [m]; nothing: what ScanDescriber says of it.
+  void setSensorPosition(const std::optional<Eigen::Vector3d>& source,
+                         const std::optional<Eigen::Vector3d>& target);
+  const std::optional<Eigen::Vector3d>& getSourceSensorPosition() const {
+    return source_describer_.getSensorPosition();
+  }
+  const std::optional<Eigen::Vector3d>& getTargetSensorPosition() const {
+    return target_describer_.getSensorPosition();
+  }
+
   /** How many threads share the work: 0 is one for each core. Default 1: that which calls, or those that it
    * gives by a core::Threads. The results are the same for every number.
    */

@@ -1,10 +1,12 @@
 #include "command_line.h"
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <typeinfo>
 
 #include "errors.h"
+#include "io/scanner.h"
 
 namespace pcl_fft_ground::cli {
 namespace {
@@ -40,6 +42,14 @@ bool takesThree(const std::string& word) {
   return word == "--up-direction" || word == "--sensor";
 }
 
+/// Whether so many of the words, from the first on, are there and are numbers.
+bool areNumbers(const std::vector<std::string>& words, std::size_t first, std::size_t count) {
+  if (first + count > words.size()) return false;
+  const auto begin = words.begin() + static_cast<std::ptrdiff_t>(first);
+  return std::all_of(begin, begin + static_cast<std::ptrdiff_t>(count),
+                     [](const std::string& word) { return parseNumber<double>(word).has_value(); });
+}
+
 /// Ties negative numbers, and the three values of a direction or a place, to the option before them.
 std::vector<std::string> tieValues(const std::string& command, const std::vector<std::string>& arguments) {
   std::vector<std::string> tied;
@@ -50,6 +60,10 @@ std::vector<std::string> tieValues(const std::string& command, const std::vector
         throw UsageError(command + ": " + word + ": allowed are three numbers, X Y Z");
       tied.push_back(word + "=" + arguments[i + 1] + " " + arguments[i + 2] + " " + arguments[i + 3]);
       i += 3;
+      if (word == "--sensor" && areNumbers(arguments, i + 1, 3)) {  // that of a second scan
+        tied.back() += " " + arguments[i + 1] + " " + arguments[i + 2] + " " + arguments[i + 3];
+        i += 3;
+      }
     } else if (isOptionName(word) && i + 1 < arguments.size() && isNegativeNumber(arguments[i + 1])) {
       tied.push_back(word + "=" + arguments[++i]);
     } else {

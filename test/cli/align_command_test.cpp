@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "errors.h"
 #include "io/cloud_file.h"
 #include "survey_fixture.h"
 
@@ -81,6 +82,17 @@ TEST_F(AlignCommand, TellsWhatThereIsToSayOfTheFiles) {
   EXPECT_EQ(report["accepted"], true);
   EXPECT_EQ(report["warnings"], json::array({remark}));
   EXPECT_EQ(run(runAlign, with(words, {"--quiet"})).err, "");
+}
+
+TEST_F(AlignCommand, SensorsAreToldForBothScansOrForEach) {
+  align({"--sensor", "0", "-0.5", "9"});
+  const json both = json::parse(contentOf(outputOf("alignment.json")))["parameters"]["sensor"];
+  EXPECT_EQ(both, (json{{"reference", {0, -0.5, 9}}, {"moving", {0, -0.5, 9}}}));
+  align({"--sensor", "0", "-0.5", "9", "1", "2", "-8"});
+  const json each = json::parse(contentOf(outputOf("alignment.json")))["parameters"]["sensor"];
+  EXPECT_EQ(each, (json{{"reference", {0, -0.5, 9}}, {"moving", {1, 2, -8}}}));
+  for (const char* wrong : {"1 2", "1 2 3 4", "1 2 3 4 5 6 7", "1 2 x", "1 2 nan"})
+    EXPECT_THROW(align({std::string("--sensor=") + wrong}), UsageError) << wrong;
 }
 
 TEST_F(AlignCommand, LargeCoordinatesAreThoseOfTheFiles) {

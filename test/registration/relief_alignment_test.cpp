@@ -116,6 +116,43 @@ TEST_F(ReliefAlignmentClass, AWallIsRefused) {
   EXPECT_TRUE(relief_.getFinalTransformation().isApprox(guess.matrix().cast<float>()));
 }
 
+/// Lifts all points within half a metre of the places of a square lattice, and the same ones in both scans.
+void addBoxes(Cloud& cloud, const Eigen::Isometry3d& world_from_scan) {
+  for (auto& point : cloud) {
+    const Eigen::Vector3d world = world_from_scan * point.getVector3fMap().cast<double>();
+    const double dx = world.x() - 2 * std::round(world.x() / 2),
+                 dy = world.y() - 2 * std::round(world.y() / 2);
+    if (std::max(std::abs(dx), std::abs(dy)) < 0.5) point.z += 1.5F;
+  }
+}
+
+TEST_F(ReliefAlignmentClass, ObjectsAreNoReliefUnlessTheyMayBe) {
+  const Cloud::Ptr source = scan(TRUTH, 1, Eigen::Matrix3d::Identity());
+  const Cloud::Ptr target = scan(Eigen::Isometry3d::Identity(), 2, Eigen::Matrix3d::Identity());
+  addBoxes(*source, TRUTH);
+  addBoxes(*target, Eigen::Isometry3d::Identity());
+  relief_.setInputSource(source);
+  relief_.setInputTarget(target);
+  relief_.setMaxShift(0.5);
+  relief_.setMaxTurn(3);
+  relief_.setMaxObjectShare(1);
+  align(TRUTH, TRUTH);
+  ASSERT_TRUE(relief_.hasConverged()) << relief_.getRefusal();
+  relief_.setMaxObjectShare(0.1);
+  align(TRUTH, TRUTH);
+  EXPECT_FALSE(relief_.hasConverged());
+  EXPECT_NE(relief_.getRefusal().find("objects have"), std::string::npos) << relief_.getRefusal();
+  EXPECT_TRUE(relief_.getFinalTransformation().isApprox(TRUTH.matrix().cast<float>()));
+}
+
+TEST_F(ReliefAlignmentClass, IsAsPreciseAsAskedFor) {
+  give();
+  relief_.setMaxSigma(1e-5);
+  align(TRUTH, TRUTH);
+  EXPECT_FALSE(relief_.hasConverged());
+  EXPECT_NE(relief_.getRefusal().find("deviation"), std::string::npos) << relief_.getRefusal();
+}
+
 TEST_F(ReliefAlignmentClass, SettersAndGettersAgree) {
   relief_.setMaxShift(3);
   EXPECT_EQ(relief_.getMaxShift(), 3);
@@ -128,6 +165,14 @@ TEST_F(ReliefAlignmentClass, SettersAndGettersAgree) {
   EXPECT_EQ(relief_.getCellSize(), 0.7);
   relief_.setCellSize(0);
   EXPECT_EQ(relief_.getCellSize(), 0);
+  relief_.setMaxObjectShare(0.3);
+  EXPECT_EQ(relief_.getMaxObjectShare(), 0.3);
+  relief_.setMaxSigma(0.02);
+  EXPECT_EQ(relief_.getMaxSigma(), 0.02);
+  relief_.setMaxSigma(0);
+  EXPECT_EQ(relief_.getMaxSigma(), 0);
+  EXPECT_THROW(relief_.setMaxObjectShare(1.1), pcl::PCLException);
+  EXPECT_THROW(relief_.setMaxSigma(-1), pcl::PCLException);
   EXPECT_THROW(relief_.setMaxShift(0), pcl::PCLException);
   EXPECT_THROW(relief_.setMaxRise(-1), pcl::PCLException);
   EXPECT_THROW(relief_.setMaxTurn(181), pcl::PCLException);

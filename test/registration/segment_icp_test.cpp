@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "pcl_fft_ground/core/segments/voxel_clusters.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
@@ -177,6 +178,20 @@ TEST_F(SegmentICPTest, WhatCannotBeWorkedOnIsARefusalAndNoException) {
   EXPECT_FALSE(icp_.hasConverged());
   EXPECT_NE(icp_.getTargetError(), "");
   EXPECT_FALSE(Icp().computeAlignment(TRUTH).accepted);
+}
+
+TEST_F(SegmentICPTest, TellsTheScansWhereTheirSensorsStood) {
+  const Eigen::Vector3d here(0.2, 0.1, 4), there(-0.3, 0, 5);
+  icp_.setUpDirection({0, 0, 1});
+  icp_.setSensorPosition(here, there);
+  align(0.1);
+  ASSERT_TRUE(icp_.getSourceScan().sensor && icp_.getTargetScan().sensor);
+  EXPECT_TRUE(icp_.getSourceScan().sensor->isApprox(here));
+  EXPECT_TRUE(icp_.getTargetScan().sensor->isApprox(there));
+  icp_.setSensorPosition(std::nullopt, std::nullopt);
+  align(0.1);
+  EXPECT_FALSE(icp_.getSourceScan().sensor || icp_.getTargetScan().sensor);
+  EXPECT_THROW(icp_.setSensorPosition(Eigen::Vector3d(0, 0, NAN), there), pcl::PCLException);
 }
 
 TEST_F(SegmentICPTest, RejectsParametersOutOfRange) {

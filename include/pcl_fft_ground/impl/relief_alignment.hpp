@@ -10,6 +10,7 @@
 
 #include "pcl_fft_ground/impl/indexed_points.hpp"
 #include "pcl_fft_ground/impl/lazy_kd_tree.hpp"
+#include "pcl_fft_ground/impl/scan_describer.hpp"
 #include "pcl_fft_ground/relief_alignment.h"
 
 namespace pcl_fft_ground {
@@ -62,11 +63,50 @@ void ReliefAlignment<PointSource, PointTarget>::setCellSize(double size) {
 }
 
 template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::setMaxObjectShare(double share) {
+  impl::requireRelief(share >= 0 && share <= 1, "largest share of objects", share, "0 to 1");
+  max_object_share_ = share;
+}
+
+template <typename PointSource, typename PointTarget>
+void ReliefAlignment<PointSource, PointTarget>::setMaxSigma(double sigma) {
+  impl::requireRelief(sigma >= 0 && std::isfinite(sigma), "largest deviation [m]", sigma,
+                      "a finite number of 0 or more");
+  if (sigma > 0)
+    parameters_.max_sigma = sigma;
+  else
+    parameters_.max_sigma.reset();
+}
+
+template <typename PointSource, typename PointTarget>
 void ReliefAlignment<PointSource, PointTarget>::setUpDirection(const Eigen::Vector3d& up) {
   const double length = up.stableNorm();
   impl::requireRelief(up.allFinite() && length > 0, "length of the up direction", length,
                       "a finite number above 0");
   up_direction_ = up.stableNormalized();
+}
+
+/// \return why the scans are not bare ground; empty if they are
+template <typename PointSource, typename PointTarget>
+std::string ReliefAlignment<PointSource, PointTarget>::reasonAgainstObjects() const {
+  if (max_object_share_ >= 1) return {};
+  const auto reason = [this](const std::string& which, const core::ScanSegments& scan,
+                             const std::string& error) {
+    if (!error.empty()) return "the objects of the " + which + " cannot be told: " + error;
+    const double share = core::shareOfObjects(scan);
+    if (share <= max_object_share_) return std::string();
+    return "objects have " + std::to_string(std::lround(100 * share)) + " % of the voxels of the " + which +
+           ", allowed are " + std::to_string(std::lround(100 * max_object_share_)) + " %";
+  };
+  ScanDescriber<PointSource> source;
+  source.setUpDirection(up_direction_);
+  const core::ScanSegments moving = source.describe(input_, indices_);
+  const std::string against = reason("source", moving, source.getError());
+  if (!against.empty()) return against;
+  ScanDescriber<PointTarget> target;
+  target.setUpDirection(up_direction_);
+  const core::ScanSegments reference = target.describe(target_);
+  return reason("target", reference, target.getError());
 }
 
 template <typename PointSource, typename PointTarget>
@@ -87,12 +127,15 @@ void ReliefAlignment<PointSource, PointTarget>::computeTransformation(PointCloud
   const Eigen::Isometry3d level_guess = level * target_from_source * level.inverse();
   try {
     result_ = core::alignRelief(source, target, level_guess, parameters);
+    if (result_.accepted) result_.refusal = reasonAgainstObjects();
   } catch (const std::exception& problem) {  // points spread so widely that cells were too many
     result_ = core::ReliefResult();
-    result_.reference_from_moving = result_.best.reference_from_moving = level_guess;
+    result_.best.reference_from_moving = level_guess;
     result_.refusal = problem.what();
     PCL_ERROR("[pcl_fft_ground::ReliefAlignment] %s\n", problem.what());
   }
+  result_.accepted = result_.refusal.empty();
+  if (!result_.accepted) result_.reference_from_moving = level_guess;
 
   const auto unlevelled = [&](const Eigen::Isometry3d& pose) { return level.inverse() * pose * level; };
   result_.reference_from_moving = unlevelled(result_.reference_from_moving);

@@ -80,6 +80,13 @@ void ScanDescriber<PointT>::setUpDirection(const Eigen::Vector3d& up) {
 }
 
 template <typename PointT>
+void ScanDescriber<PointT>::setSensorPosition(const std::optional<Eigen::Vector3d>& position) {
+  if (position && !position->allFinite())
+    throw pcl::PCLException("ScanDescriber: the sensor position is not finite");
+  sensor_position_ = position;
+}
+
+template <typename PointT>
 Eigen::Matrix3d ScanDescriber<PointT>::levelFromInput() const {
   return Eigen::Quaterniond::FromTwoVectors(up_direction_, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
@@ -106,7 +113,9 @@ core::ScanSegments ScanDescriber<PointT>::describeOrSayWhy(const pcl::PointCloud
     usable.points = (levelFromInput().template cast<float>() * usable.points).eval();
     core::SegmentParameters parameters = parameters_;
     if (voxel_size > 0) parameters.voxel_size = voxel_size;
-    return describe(usable, parameters);
+    core::ScanSegments scan = describe(usable, parameters);
+    if (sensor_position_) scan.sensor = levelFromInput() * *sensor_position_;
+    return scan;
   } catch (const std::exception& error) {
     error_ = error.what();
     return {};
@@ -121,6 +130,7 @@ pcl::PointIndices ScanDescriber<PointT>::findObjects(const PointCloudConstPtr& c
     ground.reset(new FFTGroundSegmentation<PointT>);
     ground->setUpDirection(up_direction_);
   }
+  if (sensor_position_) ground->setSensorPosition(*sensor_position_);
   ground->setInputCloud(cloud);
   // Null for all points: PCLBase copies constant indices.
   ground->setIndices(indices ? pcl::IndicesPtr(new pcl::Indices(*indices)) : pcl::IndicesPtr());

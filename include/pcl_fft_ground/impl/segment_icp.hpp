@@ -104,6 +104,14 @@ void SegmentICP<PointSource, PointTarget>::setUpDirection(const Eigen::Vector3d&
   forgetTarget();
 }
 
+template <typename PointSource, typename PointTarget>
+void SegmentICP<PointSource, PointTarget>::setSensorPosition(const std::optional<Eigen::Vector3d>& source,
+                                                             const std::optional<Eigen::Vector3d>& target) {
+  source_describer_.setSensorPosition(source);
+  target_describer_.setSensorPosition(target);
+  forgetTarget();
+}
+
 /// \return why the scans cannot be described; empty if they can
 template <typename PointSource, typename PointTarget>
 std::string SegmentICP<PointSource, PointTarget>::describeScans() {

@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "command_line.h"
 #include "commands/align/align_report.h"
@@ -27,8 +30,9 @@ Aligns two overlapping scans by the objects in them (S-ICP): both are segmented,
 matched, and ICP with correspondences in matched segments only moves MOVING on to REFERENCE. The files are PCD, PLY,
 LAS, .bin or text, in metres, z roughly up. Where the scans lie to each other is first taken from their VIEWPOINT (the
 pose of the scan by navigation) or from --guess; the default search mends 0.6 m and 8 degrees, --search wide 2.5 m and
-25 degrees. What cannot be aligned with confidence is refused, and the reason printed: a refusal is a result, too
-(exit status 0).
+25 degrees. --sensor X Y Z [X Y Z] says where the sensors stood, of both scans or of each in the order of the files:
+what a scan could have seen is then judged by ray. What cannot be aligned with confidence is refused, and the reason
+printed: a refusal is a result, too (exit status 0).
 )";
 
 constexpr const char* HELP_AFTER = R"(
@@ -100,9 +104,43 @@ InputScan readScan(const std::string& path, const ReadOptions& reading, Progress
   return scan;
 }
 
+/// Where the sensors stood, in the coordinates of the files, if it was told.
+struct Sensors {
+  std::optional<Eigen::Vector3d> reference, moving;
+};
+
+/// Takes the option out of the values: the segmenter is told of each scan's by what describes it.
+Sensors takeSensors(po::variables_map& values) {
+  if (values.count("sensor") == 0) return {};
+  const auto text = values["sensor"].as<std::string>();
+  values.erase("sensor");
+  std::string_view rest = text;
+  std::vector<double> numbers;
+  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest))
+    numbers.push_back(parseNumber<double>(word).value_or(std::numeric_limits<double>::quiet_NaN()));
+  const bool are_finite =
+      std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); });
+  if (!are_finite || (numbers.size() != 3 && numbers.size() != 6))
+    throw UsageError("--sensor " + text + ": allowed are three numbers, X Y Z, or three for each scan");
+  return {Eigen::Vector3d::Map(numbers.data()), Eigen::Vector3d::Map(numbers.data() + numbers.size() - 3)};
+}
+
+/// In the coordinates of a cloud's points.
+std::optional<Eigen::Vector3d> placedIn(const Cloud& cloud, const std::optional<Eigen::Vector3d>& sensor) {
+  return sensor ? std::optional<Eigen::Vector3d>(*sensor - cloud.origin) : std::nullopt;
+}
+
+nlohmann::ordered_json asJson(const Sensors& sensors) {
+  const auto list = [](const Eigen::Vector3d& v) { return nlohmann::ordered_json{v.x(), v.y(), v.z()}; };
+  return {{"reference", list(*sensors.reference)}, {"moving", list(*sensors.moving)}};
+}
+
 /// \throws WorkError naming the file on which the method cannot work
-void alignClouds(AlignedPair& pair, const AlignmentSettings& settings, const Segmenter& segmenter) {
+void alignClouds(AlignedPair& pair, const AlignmentSettings& settings, const Segmenter& segmenter,
+                 const Sensors& sensors) {
   SegmentICP<Point, Point>& icp = pair.icp;
+  icp.setSensorPosition(placedIn(pair.moving.cloud, sensors.moving),
+                        placedIn(pair.reference.cloud, sensors.reference));
   icp.setAlignmentParameters(settings.alignment);
   icp.setSegmentParameters(settings.segments);
   icp.setGroundSegmentation(segmenter.filter, segmenter.filter);
@@ -130,7 +168,7 @@ void printSummary(const AlignedPair& pair, const ordered_json& report) {
             << fixedNumber(report["crispness"]["delta_nx_percent"].get<double>(), 2) << " %\n";
 }
 
-void align(const po::variables_map& values) {
+void align(po::variables_map values) {
   const std::vector<std::string> clouds = values.count("cloud") == 0
                                               ? std::vector<std::string>()
                                               : values["cloud"].as<std::vector<std::string>>();
@@ -138,7 +176,9 @@ void align(const po::variables_map& values) {
   if (clouds.size() != 2) throw UsageError("align: allowed are two scans, REFERENCE and MOVING");
   if (values.count("output") == 0 || values["output"].as<std::string>().empty())
     throw UsageError("align: no output given: name a folder by -o DIR");
-  const AlignmentSettings settings = alignmentSettings(values);
+  const Sensors sensors = takeSensors(values);
+  AlignmentSettings settings = alignmentSettings(values);
+  if (sensors.reference) settings.described["sensor"] = asJson(sensors);
   const Segmenter segmenter =
       makeAlignmentSegmenter(values["method"].as<std::string>(), values, settings.version);
   const std::string directory = values["output"].as<std::string>();
@@ -156,7 +196,7 @@ void align(const po::variables_map& values) {
     for (const InputScan* scan : {&pair.reference, &pair.moving})
       for (const std::string& remark : scan->cloud.remarks) printWarning(scan->path + ": " + remark);
   progress.begin("align", "aligning");
-  alignClouds(pair, settings, segmenter);
+  alignClouds(pair, settings, segmenter, sensors);
   progress.begin("write", "writing " + directory);
   const OutputFolder folder(directory);
   const ordered_json report = makeAlignmentReport(pair, settings, segmenter);

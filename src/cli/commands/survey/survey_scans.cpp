@@ -166,6 +166,7 @@ SubmapDescription SurveyScans::describeAnew(const std::string& segmenter, std::s
                                   [&](const Segmenter& s) { return s.method == segmenter; });
   if (found == segmenters_.end()) throw std::invalid_argument("no segmenter for method " + segmenter);
   describer.setGroundSegmentation(found->filter);
+  if (found->sensor) describer.setSensorPosition(*found->sensor - loaded->cloud.origin);
   core::ScanSegments segments = describer.describe(loaded->cloud.points);
   return {std::move(segments), describer.getError()};
 }
