@@ -14,6 +14,14 @@ function(pcl_fft_ground_compile_settings target)
   endif()
 endfunction()
 
+# pcl_fft_ground_count_lines(<target>): lets it count how often its lines run, where that was asked for.
+function(pcl_fft_ground_count_lines target)
+  if(PCL_FFT_GROUND_COVERAGE)
+    target_compile_options(${target} PRIVATE --coverage -fprofile-update=atomic)
+    target_link_options(${target} PUBLIC --coverage)
+  endif()
+endfunction()
+
 # pcl_fft_ground_library(<name> EXPORT_HEADER <path> SOURCES <file>...)
 # Library pcl_fft_ground_<name>, known as pcl_fft_ground::<name> here and to consumers, with hidden visibility and
 # a generated export header included as <pcl_fft_ground/path>. Each library has an export set of its own, so that
@@ -24,6 +32,7 @@ function(pcl_fft_ground_library name)
   add_library(${target} ${ARG_SOURCES})
   add_library(pcl_fft_ground::${name} ALIAS ${target})
   pcl_fft_ground_compile_settings(${target})
+  pcl_fft_ground_count_lines(${target})
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${name}
     VERSION ${PROJECT_VERSION}

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-
+#include <limits>
 #include <vector>
-#include "scan/moments_in_parts.h"
 
 #include "pcl_fft_ground/core/scan/threads.h"
+#include "scan/moments_in_parts.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -139,7 +139,11 @@ MomentsInParts::MomentsInParts(const Bounds& bounds, Eigen::Index points) : poin
 
 void MomentsInParts::add(const PointsView& part) {
   if (steps_ == 0) return;
-  const IntegerMoments moments = integerMoments(part, bounds_.low, static_cast<float>(steps_));
+  // Between the ends of float the differences are beyond it: halves are not.
+  const bool is_too_wide = (bounds_.high - bounds_.low).maxCoeff() > std::numeric_limits<float>::max();
+  const IntegerMoments moments =
+      is_too_wide ? integerMoments(0.5F * part, 0.5 * bounds_.low, static_cast<float>(2 * steps_))
+                  : integerMoments(part, bounds_.low, static_cast<float>(steps_));
   for (std::size_t k = 0; k < sums_.size(); ++k) sums_[k] += moments.sums[k];
 }
 

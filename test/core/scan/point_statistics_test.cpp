@@ -117,6 +117,8 @@ TEST(PointStatistics, OfTheWidestPointsAreFinite) {
       1, 2, 3,                 //
       0, 1e-40F, 0;
   const PointStatistics statistics = summarise(points);
+  EXPECT_NEAR(statistics.mean.x(), 0, 1e34);
+  EXPECT_NEAR(statistics.covariance(0, 0), 6e76, 1e73);
   EXPECT_TRUE(statistics.mean.allFinite());
   EXPECT_TRUE(statistics.covariance.allFinite());
   EXPECT_EQ(statistics.bounds.high.x(), static_cast<double>(3e38F));
