@@ -116,28 +116,27 @@ void scale(Trial& trial, float factor) {
 
 std::vector<Torture> tortures() {
   constexpr float NO_NUMBER = std::numeric_limits<float>::quiet_NaN();
-  return {
-      {"another run", [](Trial&) {}},
-      {"four threads", [](Trial& t) { t.threads = 4; }},
-      {"a point 1 km away", [](Trial& t) { t.cloud->emplace_back(1000.0F, 0.0F, 0.0F); }},
-      {"a point 1 km below", [](Trial& t) { t.cloud->emplace_back(0.0F, 0.0F, -1000.0F); }},
-      {"a point at 1e30", [](Trial& t) { t.cloud->emplace_back(1e30F, 1e30F, 1e30F); }},
-      {"NaN for 1 % of the points",
-       [](Trial& t) {
-         for (std::size_t n = 0; n < t.cloud->size(); n += 100)
-           (*t.cloud)[n] = {NO_NUMBER, NO_NUMBER, NO_NUMBER};
-         t.cloud->is_dense = false;
-       }},
-      {"millimetres for metres, all lengths", [](Trial& t) { scale(t, 1000); }},
-      {"kilometres for metres, all lengths", [](Trial& t) { scale(t, 0.001F); }},
-      {"every point twice", [](Trial& t) { *t.cloud += Cloud(*t.cloud); }},
-      {"moved by 1 km",
-       [](Trial& t) {
-         for (Point& p : *t.cloud) p.x += 1000;
-       }},
-      {"a hundred points", [](Trial& t) { t.cloud->resize(100); }},
-      {"one point", [](Trial& t) { t.cloud->resize(1); }},
-      {"all points equal", [](Trial& t) { std::fill(t.cloud->begin(), t.cloud->end(), t.cloud->front()); }}};
+  return {{"another run", [](Trial&) {}},
+          {"four threads", [](Trial& t) { t.threads = 4; }},
+          {"a point 1 km away", [](Trial& t) { t.cloud->emplace_back(1000.0F, 0.0F, 0.0F); }},
+          {"a point 1 km below", [](Trial& t) { t.cloud->emplace_back(0.0F, 0.0F, -1000.0F); }},
+          {"a point at 1e30", [](Trial& t) { t.cloud->emplace_back(1e30F, 1e30F, 1e30F); }},
+          {"NaN for 1 % of the points",
+           [](Trial& t) {
+             for (std::size_t n = 0; n < t.cloud->size(); n += 100)
+               (*t.cloud)[n] = {NO_NUMBER, NO_NUMBER, NO_NUMBER};
+             t.cloud->is_dense = false;
+           }},
+          {"millimetres for metres, all lengths", [](Trial& t) { scale(t, 1000); }},
+          {"kilometres for metres, all lengths", [](Trial& t) { scale(t, 0.001F); }},
+          {"every point twice", [](Trial& t) { *t.cloud += Cloud(*t.cloud); }},
+          {"moved by 1 km",
+           [](Trial& t) {
+             for (Point& p : *t.cloud) p.x += 1000;
+           }},
+          {"a hundred points", [](Trial& t) { t.cloud->resize(100); }},
+          {"one point", [](Trial& t) { t.cloud->resize(1); }},
+          {"a hundred equal points", [](Trial& t) { *t.cloud = Cloud(100, 1, Point(t.cloud->front())); }}};
 }
 
 /// Share of the points that still are there, and finite, whose label is another one. Of scans that have

@@ -81,6 +81,7 @@ pcl::PCLPointCloud2 readRecords(std::string_view bytes, std::size_t record_bytes
   pcl::PCLPointCloud2 table;
   for (const auto& field : fields) appendField(table, field.name, field.datatype, field.count);
   allocatePoints(table, width, height);
+  if (points == 0) return table;  // there are no bytes to count from
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const std::size_t size = fieldSize(fields[f]), value_size = valueSize(fields[f].datatype);
     const char* source = bytes.data() + fields[f].offset;
