@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "cloud_file_fixture.h"
+#include "io/cloud_stream.h"
 #include "las_bytes.h"
 #include "segment_fixture.h"
 
@@ -37,6 +38,18 @@ TEST_F(CloudFile, EveryPointFormatOfLasIsRead) {
       EXPECT_EQ(cloud.labels, (std::vector<int>{0, 1, 2, 2, 0}));
       EXPECT_TRUE(cloud.remarks.empty());
     }
+  }
+}
+
+/// Nothing is made ready for a header that is longer than the file.
+TEST_F(CloudFile, LasPointsBehindTheEndOfTheFileAreNoStream) {
+  std::string bytes = lasFile();
+  putAt(bytes, 96, std::uint32_t{0xFFFFFFF0});
+  try {
+    CloudStream(makeFile("a.las", bytes), {});
+    ADD_FAILURE() << "not refused";
+  } catch (const WorkError& error) {
+    EXPECT_NE(std::string(error.what()).find("truncated"), std::string::npos) << error.what();
   }
 }
 

@@ -33,7 +33,7 @@ std::optional<RecordFile> recordsOf(CloudFormat format, std::ifstream& stream, c
       return plyRecords(head);
     case CloudFormat::LAS: {
       const std::optional<RecordFile> records = lasRecords(head, size);
-      const bool is_longer = records && records->begin > head.size();
+      const bool is_longer = records && records->begin > head.size() && records->begin <= size;
       return is_longer ? lasRecords(readHead(stream, records->begin), size) : records;
     }
     default:
