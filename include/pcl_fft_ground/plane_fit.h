@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "pcl_fft_ground/core/ground/plane_surface.h"
+#include "pcl_fft_ground/core/ground/ground_surface.h"
 #include "pcl_fft_ground/core/scan/points.h"
 #include "pcl_fft_ground/export.h"
 

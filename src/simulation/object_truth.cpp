@@ -1,4 +1,4 @@
-#include "simulation/object_truth.h"
+#include "simulation/scan_measurement.h"
 
 #include <algorithm>
 #include <optional>

@@ -7,6 +7,7 @@
 
 #include "pcl_fft_ground/simulation/simulation.h"
 #include "simulation/scan_sensor.h"
+#include "simulation/scene.h"
 #include "simulation/simulation_random.h"
 
 namespace pcl_fft_ground::core {
@@ -31,5 +32,11 @@ struct Measurement {
 /// The points of these sightings with their labels, in the scan's own frame.
 SimulatedScan measure(const std::vector<Sighting>& sightings, const Terrain& terrain,
                       const Measurement& measurement);
+
+/** Measures the objects of a scene, in the site's frame.
+ * \param footprint of the scan [m] \param faint height above the ground from which an object can be told from
+ * it [m] */
+std::vector<SimulatedObject> objectTruth(const Scene& scene, const Eigen::AlignedBox2d& footprint,
+                                         double faint);
 
 }  // namespace pcl_fft_ground::core

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/scene_placement.h"
-
 namespace pcl_fft_ground::core {
 
 namespace {

@@ -3,6 +3,7 @@
 #include "pcl_fft_ground/simulation/simulation.h"
 #include "simulation/scan_sensor.h"
 #include "simulation/scene.h"
+#include "simulation/simulation_random.h"
 
 namespace pcl_fft_ground::core {
 
@@ -19,5 +20,9 @@ Terrain makeTerrain(SceneKind kind, const Eigen::AlignedBox2d& extent, std::uint
  *  \param faint height above the ground below which a point of an object does not count [m] */
 Scene strewObjects(const Scene& site, SceneKind kind, const ScanGeometry& geometry, double share,
                    double faint, std::uint32_t seed);
+
+/// The next object for a scene of this kind, where it comes to rest on the ground or on what lies there
+/// already.
+PlacedObject placeObject(SceneKind kind, const Scene& scene, Random& random);
 
 }  // namespace pcl_fft_ground::core

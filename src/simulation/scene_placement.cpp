@@ -1,4 +1,4 @@
-#include "simulation/scene_placement.h"
+#include "simulation/scene_builder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "scan/parameter_check.h"
-#include "simulation/object_truth.h"
 #include "simulation/scan_measurement.h"
 #include "simulation/scan_sensor.h"
 #include "simulation/scene_builder.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,17 @@
 #include "pcl_fft_ground/impl/cloud_view.hpp"
 
 namespace pcl_fft_ground::impl {
+
+/// The finite ones of some points.
+struct FinitePoints {
+  core::Points points;
+  std::vector<std::size_t> positions;  ///< where they stand among all; empty if all are finite
+
+  /// Where the n-th finite point stands.
+  std::size_t position(Eigen::Index n) const {
+    return positions.empty() ? static_cast<std::size_t>(n) : positions[static_cast<std::size_t>(n)];
+  }
+};
 
 /// The points of a cloud that are to be worked on: those of an index list or, without one, all.
 template <typename PointT>
@@ -68,27 +80,22 @@ class IndexedPoints {
     return points;
   }
 
-  /// The finite points in the order of the list.
-  core::Points finitePoints() const {
-    core::Points points(3, static_cast<Eigen::Index>(size()));
-    Eigen::Index count = 0;
+  /// The finite points in the order of the list, and where they stand in it.
+  FinitePoints finite() const {
+    FinitePoints result{core::Points(3, static_cast<Eigen::Index>(size())), {}};
+    std::size_t count = 0;
     for (std::size_t n = 0; n < size(); ++n) {
-      points.col(count) = cloud_.local(position(n), Eigen::Vector3d::Zero());
-      if (isFinite(n)) ++count;
+      result.points.col(static_cast<Eigen::Index>(count)) =
+          cloud_.local(position(n), Eigen::Vector3d::Zero());
+      if (isFinite(n)) {
+        if (count++ < n) result.positions.push_back(n);
+      } else if (count == n) {  // the first one
+        result.positions.resize(n);
+        std::iota(result.positions.begin(), result.positions.end(), std::size_t{0});
+      }
     }
-    if (count < points.cols()) points.conservativeResize(Eigen::NoChange, count);
-    return points;
-  }
-
-  /// Where in the list the finite points stand; empty if all of them are finite.
-  /// \param finite_count how many are
-  std::vector<std::size_t> finitePositions(std::size_t finite_count) const {
-    if (finite_count == size()) return {};
-    std::vector<std::size_t> positions;
-    positions.reserve(finite_count);
-    for (std::size_t n = 0; n < size(); ++n)
-      if (isFinite(n)) positions.push_back(n);
-    return positions;
+    if (count < size()) result.points.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(count));
+    return result;
   }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcl_fft_ground/core/ground/plane_surface.h"
+#include "pcl_fft_ground/core/ground/ground_surface.h"
 #include "pcl_fft_ground/impl/ground_segmentation.hpp"
 #include "pcl_fft_ground/naive_ground_segmentation.h"
 

@@ -117,8 +117,8 @@ void ReliefAlignment<PointSource, PointTarget>::computeTransformation(PointCloud
     return level.linear().cast<float>() * points;
   };
   const core::Points source =
-      levelled(impl::IndexedPoints<PointSource>(*input_, indices_.get()).finitePoints());
-  const core::Points target = levelled(impl::IndexedPoints<PointTarget>(*target_, nullptr).finitePoints());
+      levelled(impl::IndexedPoints<PointSource>(*input_, indices_.get()).finite().points);
+  const core::Points target = levelled(impl::IndexedPoints<PointTarget>(*target_, nullptr).finite().points);
   Eigen::Isometry3d target_from_source(guess.template cast<double>());
   target_from_source.linear() =
       Eigen::Quaterniond(target_from_source.linear()).normalized().toRotationMatrix();

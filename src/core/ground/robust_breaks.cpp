@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "grid/openings.h"
-#include "ground/robust_regions.h"
+#include "grid/morphology.h"
 #include "ground/robust_scale.h"
 #include "scan/radix_sort.h"
 

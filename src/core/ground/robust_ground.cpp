@@ -6,9 +6,7 @@
 
 #include "grid/distances.h"
 #include "ground/robust_breaks.h"
-#include "ground/robust_choices.h"
-#include "ground/robust_growth.h"
-#include "ground/robust_points.h"
+#include "ground/robust_steps.h"
 #include "ground/robust_surface.h"
 #include "ground/robust_uncertainty.h"
 #include "scan/point_sample.h"

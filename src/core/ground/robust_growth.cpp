@@ -1,4 +1,4 @@
-#include "ground/robust_growth.h"
+#include "ground/robust_steps.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ground/robust_regions.h"
+#include "grid/morphology.h"
 #include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {

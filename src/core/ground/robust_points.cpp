@@ -1,10 +1,10 @@
-#include "ground/robust_points.h"
+#include "ground/robust_steps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "ground/robust_regions.h"
+#include "grid/morphology.h"
 #include "scan/radix_sort.h"
 
 namespace pcl_fft_ground::core {

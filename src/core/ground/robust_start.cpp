@@ -1,4 +1,4 @@
-#include "ground/robust_start.h"
+#include "ground/robust_steps.h"
 
 #include <algorithm>
 #include <cmath>

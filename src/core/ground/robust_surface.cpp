@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "ground/robust_start.h"
+#include "ground/robust_steps.h"
 #include "pcl_fft_ground/core/scan/threads.h"
 
 namespace pcl_fft_ground::core {

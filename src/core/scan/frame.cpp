@@ -6,7 +6,7 @@
 #include "pcl_fft_ground/core/scan/convex_hull.h"
 #include "pcl_fft_ground/core/scan/threads.h"
 #include "scan/hull_filter.h"
-#include "scan/level_frame.h"
+#include "scan/in_parts.h"
 
 namespace pcl_fft_ground::core {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pcl_fft_ground/core/scan/threads.h"
-#include "scan/moments_in_parts.h"
+#include "scan/in_parts.h"
 
 namespace pcl_fft_ground::core {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <tuple>
 
-#include "segments/voxel_contact.h"
+#include "segments/voxel_set.h"
 
 namespace pcl_fft_ground::core {
 namespace {

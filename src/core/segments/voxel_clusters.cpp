@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "segments/voxel_contact.h"
+#include "segments/voxel_set.h"
 
 namespace pcl_fft_ground::core {
 namespace {

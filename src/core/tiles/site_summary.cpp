@@ -7,8 +7,7 @@
 #include "pcl_fft_ground/core/scan/convex_hull.h"
 #include "pcl_fft_ground/core/scan/far_points.h"
 #include "scan/hull_filter.h"
-#include "scan/level_frame.h"
-#include "scan/moments_in_parts.h"
+#include "scan/in_parts.h"
 
 namespace pcl_fft_ground::core {
 namespace {

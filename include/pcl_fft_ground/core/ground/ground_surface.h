@@ -6,6 +6,7 @@
 #include "pcl_fft_ground/core/export.h"
 #include "pcl_fft_ground/core/grid/elevation_grid.h"
 #include "pcl_fft_ground/core/ground/labels.h"
+#include "pcl_fft_ground/core/scan/point_statistics.h"
 #include "pcl_fft_ground/core/scan/points.h"
 
 namespace pcl_fft_ground::core {
@@ -35,5 +36,17 @@ struct GroundSurface {
  */
 PCL_FFT_GROUND_CORE_EXPORT Labels labelByHeight(const PointsView& points, const GroundSurface& surface,
                                                 double tolerance);
+
+/// A plane that is not vertical: z = slope . (x, y) + offset [m].
+struct Plane {
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+  double offset = 0;
+};
+
+/** A plane as a ground surface of 2 x 2 cells whose centres span the bounds.
+ * \param bounds of the points in the level frame; the surface is flat beyond them
+ */
+PCL_FFT_GROUND_CORE_EXPORT GroundSurface planeSurface(const Eigen::Isometry3d& frame_from_input,
+                                                      const Bounds& bounds, const Plane& plane);
 
 }  // namespace pcl_fft_ground::core

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "pcl_fft_ground/core/align/scan_coverage.h"
 #include "pcl_fft_ground/core/export.h"
+#include "pcl_fft_ground/core/grid/scan_coverage.h"
 #include "pcl_fft_ground/core/scan/points.h"
 
 namespace pcl_fft_ground::core {

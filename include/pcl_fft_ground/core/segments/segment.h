@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pcl_fft_ground/core/align/scan_coverage.h"
 #include "pcl_fft_ground/core/export.h"
+#include "pcl_fft_ground/core/grid/scan_coverage.h"
 #include "pcl_fft_ground/core/ground/labels.h"
 #include "pcl_fft_ground/core/scan/points.h"
 

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "pcl_fft_ground/core/align/scan_coverage.h"
 #include "pcl_fft_ground/core/export.h"
+#include "pcl_fft_ground/core/grid/scan_coverage.h"
 
 namespace pcl_fft_ground::core {
 

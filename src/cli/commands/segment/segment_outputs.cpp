@@ -13,7 +13,7 @@
 #include "errors.h"
 #include "io/output_file.h"
 #include "io/raster_files.h"
-#include "pcl_fft_ground/core/align/scan_coverage.h"
+#include "pcl_fft_ground/core/grid/scan_coverage.h"
 #include "pcl_fft_ground/core/scan/prepare.h"
 #include "pcl_fft_ground/core/segments/object_properties.h"
 #include "pcl_fft_ground/impl/indexed_points.hpp"
@@ -196,7 +196,7 @@ std::optional<core::ScanCoverage> coverageOf(const Cloud& cloud, double cell_siz
   constexpr double CELLS = 2.5;  // as alignment has it
   const impl::IndexedPoints<Point> all(*cloud.points, nullptr);
   try {
-    return core::coverageOf(core::usablePoints(all.finitePoints()).points, CELLS * cell_size);
+    return core::coverageOf(core::usablePoints(all.finite().points).points, CELLS * cell_size);
   } catch (const std::length_error&) {
     return std::nullopt;
   }

@@ -13,7 +13,7 @@
 #include "commands/segment/segment_report.h"
 #include "errors.h"
 #include "io/output_file.h"
-#include "pcl_fft_ground/core/align/scan_coverage.h"
+#include "pcl_fft_ground/core/grid/scan_coverage.h"
 #include "pcl_fft_ground/core/ground/cutoff.h"
 #include "pcl_fft_ground/core/ground/spectrum.h"
 #include "pcl_fft_ground/simulation/evaluation.h"

@@ -1,9 +1,11 @@
-#include "pcl_fft_ground/core/align/scan_coverage.h"
+#include "pcl_fft_ground/core/grid/scan_coverage.h"
 
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "grid/morphology.h"
 
 namespace pcl_fft_ground::core {
 namespace {
@@ -21,17 +23,6 @@ Mask occupiedCells(const PointsView& points, const GridGeometry& geometry) {
     occupied(static_cast<Eigen::Index>(cell.x()), static_cast<Eigen::Index>(cell.y())) = true;
   }
   return occupied;
-}
-
-/// Cells with a neighbour of the given kind, or of that kind themselves.
-Mask grown(const Mask& mask) {
-  Mask result = mask;
-  const Eigen::Index rows = mask.rows() - 2;
-  const Eigen::Index cols = mask.cols() - 2;
-  for (Eigen::Index i = 0; i < 3; ++i)
-    for (Eigen::Index j = 0; j < 3; ++j)
-      result.block(1, 1, rows, cols) = result.block(1, 1, rows, cols) || mask.block(i, j, rows, cols);
-  return result;
 }
 
 /// The uncovered cells that hang together with one, which are marked as visited.
@@ -122,7 +113,7 @@ GridGeometry coverageCells(const Bounds& bounds, double cell_size) {
 }
 
 ScanCoverage coverageOf(const GridGeometry& cells, const Mask& occupied) {
-  const Mask closed = !grown(!grown(occupied));
+  const Mask closed = !dilated(!dilated(occupied, 1), 1);
   return {cells, depthOf(withoutShadows(closed), cells.cell_size)};
 }
 
