@@ -136,12 +136,21 @@ class FFTGroundSegmentation : public GroundSegmentation<PointT> {
   std::vector<core::RobustChoice> getChoices() const;
   /// Spread [m] of the ground points around the surface of ROBUST, a standard deviation; NaN before a run.
   double getGroundSpread() const;
+  /** How likely each point of the input is ground, in [0, 1], by the last run of ROBUST: see
+   * core::groundProbability(). In the order of setIndices(); NaN for points that are not finite, 0 for those
+   * too far from all others. Empty where there is no such run, or no input. Computed at each call.
+   */
+  std::vector<float> getGroundProbability() const;
   /// Points so deep below the ground of the last run, with ROBUST, that they are noise; they count as
   /// objects.
   std::size_t getPointsBelowGround() const { return points_below_; }
 
  protected:
   core::Labels labelPoints(const core::Points& points, const Eigen::Isometry3d& frame_from_input) override;
+
+  using pcl::PCLBase<PointT>::indices_;
+  using pcl::PCLBase<PointT>::fake_indices_;
+  using GroundSegmentation<PointT>::input_;
 
  private:
   core::Labels labelByLowPass(const core::Points& points, const Eigen::Isometry3d& frame_from_input);

@@ -130,6 +130,9 @@ class GroundSegmentation : public pcl::FilterIndices<PointT> {
    */
   virtual core::Labels labelPoints(const core::Points& points, const Eigen::Isometry3d& frame_from_input) = 0;
 
+  /// The points that getLevelPoints() gives, and which of the input they are.
+  core::UsablePoints levelPoints() const;
+
   /// Adds a sentence to getWarnings() and logs it.
   void warn(const std::string& sentence);
 

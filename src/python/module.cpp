@@ -33,6 +33,7 @@ using Point = pcl::PointXYZ;
 struct Segmentation {
   py::array_t<std::int32_t> labels;    ///< 0 ground, 1 object, 2 neither
   py::array_t<double> height;          ///< above the ground [m]
+  py::array_t<float> p_ground;         ///< how likely a point is ground; empty if not known
   py::array_t<std::int32_t> segments;  ///< from 1 by falling size, 0 none
   core::GroundSurface surface;         ///< its frame takes the coordinates of the array
   py::dict report;
@@ -42,6 +43,7 @@ struct Segmentation {
 struct Result {
   pcl::PointIndices ground, objects;
   std::vector<double> heights;
+  std::vector<float> ground_probability;
   std::vector<pcl::PointIndices> clusters;
 };
 
@@ -94,6 +96,8 @@ Result run(Filter& filter, const PointArray& xyz, const Clustering& clustering) 
   filter.setInputCloud(xyz.points);
   filter.segment(result.ground, result.objects);
   result.heights = filter.getHeightAboveGround();
+  if (const auto* fft = dynamic_cast<const FFTGroundSegmentation<Point>*>(&filter))
+    result.ground_probability = fft->getGroundProbability();
   const Eigen::Vector3d up = filter.getFrame().linear().row(2).transpose();
   result.clusters = clustersOf(xyz.points, result.objects.indices, up,
                                clustering.leaf_size.value_or(defaultLeafSize(filter)), clustering);
@@ -192,6 +196,9 @@ Segmentation segment(const py::array& xyz, std::optional<double> max_object_size
   segmentation.labels = labelsOf(count, result);
   segmentation.height = filled<double>(count, std::numeric_limits<double>::quiet_NaN());
   std::copy(result.heights.begin(), result.heights.end(), segmentation.height.mutable_data());
+  segmentation.p_ground = filled<float>(result.ground_probability.size(), 0);
+  std::copy(result.ground_probability.begin(), result.ground_probability.end(),
+            segmentation.p_ground.mutable_data());
   segmentation.segments = segmentsOf(count, result);
   segmentation.surface = filter->getGroundSurface();
   segmentation.surface.frame_from_input.translate(-points.origin);
@@ -239,6 +246,10 @@ the level frame; frame_from_input brings points there, its z axis is up.)")
                     "int32, one for each point: 0 ground, 1 object, 2 neither (not finite)")
       .def_readonly("height", &Segmentation::height,
                     "height above the ground [m], one for each point; NaN where it is not finite")
+      .def_readonly(
+          "p_ground", &Segmentation::p_ground,
+          "float32, how likely each point is ground, 0 to 1, by the robust estimator; NaN where it is "
+          "not finite, empty with other methods")
       .def_readonly("segments", &Segmentation::segments,
                     "int32, number of the point's segment, from 1 by falling size; 0 none")
       .def_readonly("surface", &Segmentation::surface, "the ground, a Surface")

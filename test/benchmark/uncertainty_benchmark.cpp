@@ -23,8 +23,8 @@
 #include <utility>
 #include <vector>
 
+#include "known_scans.h"
 #include "pcl_fft_ground/fft_ground_segmentation.h"
-#include "pcl_fft_ground/simulation/simulation.h"
 
 namespace {
 
@@ -71,12 +71,7 @@ struct Trial {
 };
 
 Trial simulated(core::SceneKind kind, std::uint32_t seed) {
-  core::SimulationParameters parameters;
-  parameters.scene = kind;
-  parameters.object_share = 0.3;
-  parameters.points = 300000;
-  parameters.seed = seed;
-  const core::SimulatedScan scan = core::simulateScan(parameters);
+  const core::SimulatedScan scan = benchmarkScan(kind, seed);
   Trial trial(1.0, seed);
   for (Eigen::Index n = 0; n < scan.points.cols(); ++n)
     trial.add({scan.points(0, n), scan.points(1, n), scan.points(2, n)},
@@ -127,33 +122,6 @@ class Row {
   double count_ = 0, within_ = 0, errors_ = 0, variances_ = 0, least_ = 1, greatest_ = 0;
 };
 
-/// Labelled scans, and the size of the largest object there [m].
-const std::vector<std::pair<std::string, double>> LAND{{"isprs/isprs_samp12", 40},
-                                                       {"isprs/isprs_samp21", 40},
-                                                       {"isprs/isprs_samp23", 40},
-                                                       {"isprs/isprs_samp31", 40},
-                                                       {"isprs/isprs_samp42", 40},
-                                                       {"isprs/isprs_samp51", 40},
-                                                       {"isprs/isprs_samp53", 40},
-                                                       {"land/ahn3_town", 40},
-                                                       {"land/autzen", 60},
-                                                       {"land/embankment", 40},
-                                                       {"land/forest_dense_canopy", 20},
-                                                       {"land/forest_lakes", 20},
-                                                       {"land/forest_low_vegetation", 20},
-                                                       {"land/ign_sparse", 60},
-                                                       {"land/ign_town", 30},
-                                                       {"land/indoor_room", 3},
-                                                       {"land/roof_at_corner", 40},
-                                                       {"land/semkitti_seq00_000000", 10},
-                                                       {"oakland/oakland_part2_ac", 10},
-                                                       {"oakland/oakland_part2_ag", 10},
-                                                       {"oakland/oakland_part3_al", 10},
-                                                       {"oakland/oakland_part3_ao", 10},
-                                                       {"mosd/mosd_learn0", 0.4},
-                                                       {"mosd/mosd_learn2", 0.4},
-                                                       {"mosd/mosd_test55", 0.4}};
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -161,18 +129,14 @@ int main(int argc, char** argv) {
   const auto last = static_cast<std::uint32_t>(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : first + 9);
   std::puts(
       "| scan | withheld | within [%] | by seed | error [m] | expected [m] |\n|---|---|---|---|---|---|");
-  for (const auto& [name, kind] :
-       {std::pair{"wreck", core::SceneKind::WRECK}, std::pair{"pipes", core::SceneKind::PIPES},
-        std::pair{"reef", core::SceneKind::REEF}}) {
+  for (const auto& [name, kind] : KINDS) {
     Row row;
     for (std::uint32_t seed = first; seed <= last; ++seed) row.add(simulated(kind, seed));
     row.print(name);
   }
-  const char* data = std::getenv("PCL_FFT_GROUND_DATA");
-  if (data == nullptr) return 0;
+  if (!hasLand()) return 0;
   for (const auto& [name, largest] : LAND) {
-    pcl::PointCloud<pcl::PointXYZL> cloud;
-    if (pcl::io::loadPCDFile(std::string(data) + "/" + name + ".pcd", cloud) != 0) return 1;
+    const pcl::PointCloud<pcl::PointXYZL> cloud = landScan(name);
     Row row;
     for (std::uint32_t seed = first; seed <= last; ++seed) row.add(measured(cloud, largest, seed));
     row.print(name.substr(name.find('/') + 1));

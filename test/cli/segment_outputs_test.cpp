@@ -189,13 +189,20 @@ TEST_F(SegmentCommand, HeightsAboveTheGroundAreAFieldWhereAskedFor) {
   segment(scan, {"--height"});
   const std::vector<double> heights = valuesOf(readByPcl(outputOf("labelled.pcd")), "height");
   const std::vector<double> label = labels();
+  const std::vector<double> p_ground = valuesOf(readByPcl(outputOf("labelled.pcd")), "p_ground");
+  ASSERT_EQ(p_ground.size(), label.size());
   const double tolerance = report()["ground"]["height_tolerance"];
   ASSERT_EQ(heights.size(), label.size());
   EXPECT_GT(std::count_if(heights.begin(), heights.end(), [&](double h) { return h > tolerance; }), 100);
   for (std::size_t n = 0; n < heights.size(); ++n)
     if (label[n] == 1) {
       EXPECT_GT(heights[n], tolerance) << n;
+      EXPECT_LT(p_ground[n], 0.5) << n;
+    } else {
+      EXPECT_TRUE(heights[n] > 0 || p_ground[n] == 1) << n;
     }
+  segment(scan, {"--height", "--method", "naive"});
+  EXPECT_EQ(findField(readByPcl(outputOf("labelled.pcd")), "p_ground"), nullptr);
 }
 
 TEST_F(SegmentCommand, TheLowPassEstimatorIsThePublishedMethod) {

@@ -132,6 +132,13 @@ TEST_F(TiledSegment, AgreesWithARunThatHoldsAllPoints) {
   EXPECT_GE(share(labels, valuesOf(whole, "label")), 0.9995);
   EXPECT_GE(shareFoundAgain(valuesOf(whole, "segment"), valuesOf(tiled, "segment")), 0.95);
   EXPECT_GE(shareFoundAgain(valuesOf(tiled, "segment"), valuesOf(whole, "segment")), 0.95);
+  const std::vector<double> of_all = valuesOf(whole, "p_ground"), p_ground = valuesOf(tiled, "p_ground");
+  double different = 0;
+  for (std::size_t n = 0; n < of_all.size(); ++n) {
+    ASSERT_EQ(std::isnan(p_ground[n]), std::isnan(of_all[n])) << n;
+    if (!std::isnan(of_all[n])) different += std::abs(p_ground[n] - of_all[n]) > 0.1 ? 1 : 0;
+  }
+  EXPECT_LT(different, 0.005 * static_cast<double>(of_all.size()));
   EXPECT_EQ(labels[17], 2);
   EXPECT_EQ(labels[4711], 1);
 

@@ -163,6 +163,35 @@ TEST(FFTGroundSegmentation, HeightsAboveTheGroundFollowTheInput) {
   EXPECT_TRUE(segmenter.getHeightAboveGround().empty());
 }
 
+TEST(FFTGroundSegmentation, ProbabilitiesOfTheGroundFollowTheInput) {
+  const auto cloud = cloudOf<Point>(boxScene().points);
+  spoilPoints(*cloud);
+  Segmenter segmenter = segmenterOn(cloud);
+  EXPECT_TRUE(segmenter.getGroundProbability().empty());
+  objectsOf(segmenter);
+  const std::vector<float> all = segmenter.getGroundProbability();
+  ASSERT_EQ(all.size(), cloud->size());
+  const std::vector<double> heights = segmenter.getHeightAboveGround();
+  double on_ground = 0, on_object = 0;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    ASSERT_EQ(std::isnan(all[n]), std::isnan(heights[n])) << n;
+    if (std::isnan(all[n])) continue;
+    ASSERT_TRUE(all[n] >= 0 && all[n] <= 1) << all[n];
+    if (heights[n] > 3 * segmenter.getHeightTolerance()) on_object = std::max(on_object, 1.0 * all[n]);
+    if (std::abs(heights[n]) < segmenter.getGroundSpread()) on_ground += all[n] < 0.5F ? 1 : 0;
+  }
+  EXPECT_LT(on_object, 0.05);
+  EXPECT_EQ(on_ground, 0);
+  segmenter.setIndices(pcl::IndicesPtr(new pcl::Indices{700, 3}));
+  EXPECT_EQ(segmenter.getGroundProbability(), (std::vector<float>{all[700], all[3]}));
+  segmenter.setIndices(pcl::IndicesPtr(new pcl::Indices{-1}));
+  EXPECT_TRUE(segmenter.getGroundProbability().empty());
+  Segmenter published = segmenterOn(cloud);
+  published.setEstimator(Estimator::LOW_PASS);
+  objectsOf(published);
+  EXPECT_TRUE(published.getGroundProbability().empty());
+}
+
 TEST(FFTGroundSegmentation, APointDeepBelowIsAnObjectAndCounted) {
   const auto cloud = cloudOf<Point>(boxScene().points);
   (*cloud)[2000].z -= 3;

@@ -48,6 +48,8 @@ class Segment(unittest.TestCase):
         self.assertEqual(result.segments.max(), 1)
         self.assertTrue(np.all((result.segments > 0) <= (result.labels == 1)))
         np.testing.assert_allclose(np.median(result.height[on_box]), 0.2, atol=0.01)
+        self.assertTrue(np.all(result.p_ground[on_box & (result.height > 0.1)] == 0))
+        self.assertGreater(np.mean(result.p_ground[~on_box]), 0.99)
         self.assertEqual(result.report["ground"], np.count_nonzero(result.labels == 0))
         self.assertEqual(result.report["objects"], np.count_nonzero(result.labels == 1))
         self.assertIn("cell_size", result.report["chosen"])
@@ -82,6 +84,7 @@ class Segment(unittest.TestCase):
         result = pcl_fft_ground.segment(xyz, 1.0)
         np.testing.assert_array_equal(np.flatnonzero(result.labels == 2), [10, 20])
         np.testing.assert_array_equal(np.flatnonzero(np.isnan(result.height)), [10, 20])
+        np.testing.assert_array_equal(np.flatnonzero(np.isnan(result.p_ground)), [10, 20])
         self.assertEqual(result.report["neither"], 2)
 
     def test_no_points_give_no_labels(self):
@@ -91,7 +94,9 @@ class Segment(unittest.TestCase):
         xyz, _ = sea_floor(0.04)
         for method in ("naive", "planar", "grid", "graph-cut", "fft-lowpass", "fft"):
             with self.subTest(method=method):
-                labels = pcl_fft_ground.segment(xyz, method=method).labels
+                result = pcl_fft_ground.segment(xyz, method=method)
+                labels = result.labels
+                self.assertEqual(result.p_ground.size, labels.size if method == "fft" else 0)
                 self.assertTrue(set(np.unique(labels)) <= {0, 1})
 
     def test_wrong_values_name_the_parameter(self):

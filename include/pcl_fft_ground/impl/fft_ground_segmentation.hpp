@@ -208,6 +208,21 @@ double FFTGroundSegmentation<PointT>::getGroundSpread() const {
 }
 
 template <typename PointT>
+std::vector<float> FFTGroundSegmentation<PointT>::getGroundProbability() const {
+  const auto* robust = std::get_if<core::RobustGround>(&ground_);
+  if (!input_ || robust == nullptr || robust->surface.height.size() == 0) return {};
+  const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
+  if (!points.areValid()) return {};
+  const core::UsablePoints level = this->levelPoints();
+  const std::vector<float> known = core::groundProbability(level.points, *robust);
+  std::vector<float> result(points.size(), std::numeric_limits<float>::quiet_NaN());
+  for (const Eigen::Index n : level.far) result[static_cast<std::size_t>(n)] = 0;
+  for (std::size_t n = 0; n < known.size(); ++n)
+    result[static_cast<std::size_t>(level.column(static_cast<Eigen::Index>(n)))] = known[n];
+  return result;
+}
+
+template <typename PointT>
 double FFTGroundSegmentation<PointT>::chosen(double core::RobustGround::*value) const {
   const auto* robust = std::get_if<core::RobustGround>(&ground_);
   return robust != nullptr && robust->surface.height.size() > 0 ? robust->*value : impl::NOT_IN_FORCE;

@@ -158,11 +158,18 @@ std::vector<double> GroundSegmentation<PointT>::getHeightAboveGround() const {
 
 template <typename PointT>
 core::Points GroundSegmentation<PointT>::getLevelPoints() const {
+  return levelPoints().points;
+}
+
+template <typename PointT>
+core::UsablePoints GroundSegmentation<PointT>::levelPoints() const {
   if (!input_) return {};
   const impl::IndexedPoints<PointT> points(*input_, fake_indices_ ? nullptr : indices_.get());
   if (!points.areValid()) return {};
   const Eigen::Isometry3d frame_from_points = frame_from_input_ * Eigen::Translation3d(origin_);
-  return core::transformed(core::usablePoints(points.rawPoints(origin_)).points, frame_from_points);
+  core::UsablePoints usable = core::usablePoints(points.rawPoints(origin_));
+  usable.points = core::transformed(usable.points, frame_from_points);
+  return usable;
 }
 
 template <typename PointT>

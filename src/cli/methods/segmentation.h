@@ -39,6 +39,7 @@ struct Segmentation {
   core::Labels labels;                      ///< per input point
   std::vector<std::int32_t> segments;       ///< per input point: number of its segment, from 1; 0 none
   std::vector<double> heights;              ///< per input point: above the ground [m]; empty if not asked for
+  std::vector<float> ground_probability;    ///< per input point; empty if not asked for, or not known
   core::ElevationGrid elevation;            ///< highest points, in the level frame
   core::GroundSurface surface;              ///< ground, in the level frame
   std::optional<core::Confusion> confusion;  ///< against the input's labels, if it has some

@@ -259,10 +259,10 @@ SiteGround groundOfSite(const Site& site, const SiteRequest& request, const Tile
   result.tolerances.choices = site.plan.choices;
   core::chooseTolerances(request.robust, site.plan, static_cast<Eigen::Index>(result.observed),
                          result.tolerances);
-  if (request.robust.height_tolerance) return result;
   core::ClearanceCounts counts;
   for (std::size_t t = 0; t < site.tiling.size(); ++t) counts.add(clearancesOf(site, result, store, t));
   core::widenTolerance(request.robust, counts, result.tolerances);
+  result.tolerances.shares = core::groundShares(counts, result.tolerances);
   return result;
 }
 
@@ -277,6 +277,7 @@ core::TileGround groundOf(const Site& site, const SiteGround& ground, const Tile
   result.ground.most_tolerance = ground.tolerances.most_tolerance;
   result.ground.slope_tolerance = ground.tolerances.slope_tolerance;
   result.ground.depth_tolerance = ground.tolerances.depth_tolerance;
+  result.ground.shares = ground.tolerances.shares;
   return result;
 }
 
@@ -284,8 +285,8 @@ void labelTiles(const Site& site, const SiteGround& ground, const TileStore& sto
   eachTile(site, store, LABELS, advance, [&](std::size_t t) {
     const core::TileGround tile = groundOf(site, ground, store, t);
     const core::Points points = store.readPoints(t, "points", site.points_of_tile[t]);
-    const core::RobustLabels labelled =
-        core::labelRobust(core::transformed(points, site.frame_from_input), tile.ground);
+    const core::Points level = core::transformed(points, site.frame_from_input);
+    const core::RobustLabels labelled = core::labelRobust(level, tile.ground);
     std::vector<float> heights;
     heights.reserve(labelled.labels.size());
     for (Eigen::Index n = 0; n < points.cols(); ++n)
@@ -307,6 +308,7 @@ void labelTiles(const Site& site, const SiteGround& ground, const TileStore& sto
     writer.put(static_cast<std::uint64_t>(object_heights.size()));
     writer.putAll(labelled.labels);
     writer.putAll(heights);
+    writer.putAll(core::groundProbability(level, tile.ground));
     return writer;
   });
 }
@@ -318,6 +320,7 @@ TileLabels readLabels(const TileStore& store, std::size_t tile) {
   result.objects = reader.take<std::uint64_t>();
   result.labels = reader.takeAll<core::Label>();
   result.heights = reader.takeAll<float>();
+  result.probabilities = reader.takeAll<float>();
   return result;
 }
 

@@ -34,7 +34,8 @@ void labelTiles(const Site& site, const SiteGround& ground, const TileStore& sto
 /// The labels of a tile's points, in their order in the file.
 struct TileLabels {
   std::vector<core::Label> labels;
-  std::vector<float> heights;  ///< above the ground [m]
+  std::vector<float> heights;        ///< above the ground [m]
+  std::vector<float> probabilities;  ///< of being ground
   std::uint64_t below = 0;     ///< objects that lie below the ground
   std::uint64_t objects = 0;
 };

@@ -53,12 +53,13 @@ double pointSpacing(double cell_size, Eigen::Index observed, Eigen::Index points
   return cell_size * std::min(1.0, std::sqrt(static_cast<double>(observed) / static_cast<double>(points)));
 }
 
-/// The height from which to call points objects with the least expected harm, in steps, by what lies below.
-std::size_t leastHarm(const ClearanceCounts& counts) {
+/// The height from which to call points objects with the least expected harm, in steps and of at most so
+/// many, by what lies below.
+std::size_t leastHarm(const ClearanceCounts& counts, std::size_t most) {
   constexpr long FALSE_OBJECT = 2;  // as bad as so many objects called ground
   std::size_t best = 0;
   long harm = 0, least = 0;
-  for (std::size_t step = 0; step < ClearanceCounts::STEPS; ++step) {
+  for (std::size_t step = 0; step < most; ++step) {
     harm +=
         static_cast<long>(counts.above[step]) - (1 + FALSE_OBJECT) * static_cast<long>(counts.below[step]);
     if (harm < least) least = harm, best = step + 1;
@@ -126,30 +127,29 @@ void ClearanceCounts::add(const ClearanceCounts& part) {
 
 ClearanceCounts clearancesOf(const PointsView& points, const RobustGround& ground) {
   ClearanceCounts counts;
-  if (!(ground.most_tolerance > 0) || ground.surface.height.size() == 0) return counts;
+  if (!(ground.depth_tolerance > 0) || ground.surface.height.size() == 0) return counts;
   const Clearance clearance(ground, points);
-  const auto per_metre = static_cast<float>(ClearanceCounts::STEPS / ground.most_tolerance);
-  const auto deepest = static_cast<float>(ground.depth_tolerance);
+  const auto per_metre = static_cast<float>(ClearanceCounts::STEPS / ground.depth_tolerance);
   const auto count = [&](float distance, std::array<std::uint64_t, ClearanceCounts::STEPS>& steps) {
-    if (distance <= 0) return;
-    const float step = std::min(distance * per_metre, static_cast<float>(ClearanceCounts::STEPS));
-    ++steps[std::min(static_cast<std::size_t>(step), ClearanceCounts::STEPS - 1)];
+    const float step = distance * per_metre;
+    if (step > 0 && step < ClearanceCounts::STEPS) ++steps[static_cast<std::size_t>(step)];
   };
   Clearance::Block block;
   for (std::size_t begin = 0; begin < static_cast<std::size_t>(points.cols()); begin += block.count) {
     clearance.read(points, begin, block);
     for (std::size_t n = 0; n < block.count; ++n) {
-      if (block.above[n] * per_metre < ClearanceCounts::STEPS) count(block.above[n], counts.above);
-      if (block.below[n] <= deepest) count(block.below[n], counts.below);
+      count(block.above[n], counts.above);
+      count(block.below[n], counts.below);
     }
   }
   return counts;
 }
 
 void widenTolerance(const RobustParameters& parameters, const ClearanceCounts& counts, RobustGround& ground) {
-  if (parameters.height_tolerance || !(ground.most_tolerance > 0)) return;
-  const double wider =
-      ground.most_tolerance * static_cast<double>(leastHarm(counts)) / ClearanceCounts::STEPS;
+  if (parameters.height_tolerance || !(ground.depth_tolerance > 0)) return;
+  const double step = ground.depth_tolerance / ClearanceCounts::STEPS;
+  const double most = std::min(ground.most_tolerance / step, 1.0 * ClearanceCounts::STEPS);
+  const double wider = step * static_cast<double>(leastHarm(counts, static_cast<std::size_t>(most)));
   if (wider <= ground.tolerance) return;
   ground.tolerance = wider;
   RobustChoice& choice =

@@ -156,7 +156,9 @@ RobustGround estimateRobustGround(const PointsView& points, const Eigen::Isometr
   const Points sample = plannedSample(points, plan);
   RobustGround ground = fitSample(sample, points.cols(), frame_from_input, plan, parameters);
   chooseTolerances(parameters, plan, ground.elevation.observed.count(), ground);
-  if (!parameters.height_tolerance) widenTolerance(parameters, clearancesOf(sample, ground), ground);
+  const ClearanceCounts clearances = clearancesOf(sample, ground);
+  widenTolerance(parameters, clearances, ground);
+  ground.shares = groundShares(clearances, ground);
   return ground;
 }
 

@@ -75,6 +75,17 @@ struct StandingRegion {
       seam;  ///< rows and columns of its cells at the tile's edge
 };
 
+/// How many points lie in each of equal steps above the ground, and below it, up to the depth tolerance.
+struct ClearanceCounts {
+  static constexpr std::size_t STEPS = 512;
+  std::array<std::uint64_t, STEPS> above{}, below{};
+
+  PCL_FFT_GROUND_CORE_EXPORT void add(const ClearanceCounts& part);
+};
+
+/// The share of the ground among the points of each of these steps above it, in [0, 1].
+using GroundShares = std::array<float, ClearanceCounts::STEPS>;
+
 /// The ground of a scan, how sure it is, and what led to it.
 struct RobustGround {
   ElevationGrid elevation;     ///< height of each cell by the statistic
@@ -90,6 +101,7 @@ struct RobustGround {
   double most_tolerance = 0;   ///< or than its cell's lowest point by the tolerance, up to this [m]
   double slope_tolerance = 0;  ///< plus this times the local slope [m]
   double depth_tolerance = 0;  ///< a point deeper below the surface than this is an object [m]
+  GroundShares shares{};       ///< of the points above the surface
   double finest_wavelength = 0;       ///< of the surface [m]
   std::vector<double> wavelengths;    ///< all scales, coarse to fine [m]
   std::vector<RobustChoice> choices;  ///< of the values that were not set
@@ -165,15 +177,6 @@ PCL_FFT_GROUND_CORE_EXPORT Points plannedSample(const PointsView& level_points, 
 PCL_FFT_GROUND_CORE_EXPORT void chooseTolerances(const RobustParameters& parameters, const RobustPlan& plan,
                                                  Eigen::Index observed, RobustGround& ground);
 
-/// How many points lie in each of equal steps above the ground, the greatest tolerance being all of them, and
-/// below it; what lies further below is in the last step.
-struct ClearanceCounts {
-  static constexpr std::size_t STEPS = 256;
-  std::array<std::uint64_t, STEPS> above{}, below{};
-
-  PCL_FFT_GROUND_CORE_EXPORT void add(const ClearanceCounts& part);
-};
-
 /// \param level_points of which to judge
 /// \param ground tolerances chosen, all else known
 PCL_FFT_GROUND_CORE_EXPORT ClearanceCounts clearancesOf(const PointsView& level_points,
@@ -190,6 +193,19 @@ PCL_FFT_GROUND_CORE_EXPORT ClearanceCounts clearancesOf(const PointsView& level_
 PCL_FFT_GROUND_CORE_EXPORT void widenTolerance(const RobustParameters& parameters,
                                                const ClearanceCounts& counts, RobustGround& ground);
 
+/** How likely points above the ground are of it.
+ *
+ * Ground is as likely to lie above the middle of the ground's points as below it: of the points in a step
+ * above, at least as many are ground as lie in the same step below. Objects rise from the ground and are about
+ * as many in each step near their feet: what is more than in the steps beyond the ground is ground, too. The
+ * shares fall with the height; where the counts do not, neighbouring steps have one share.
+ *
+ * \param counts of the whole scan
+ * \param ground its scale and depth tolerance are known
+ */
+PCL_FFT_GROUND_CORE_EXPORT GroundShares groundShares(const ClearanceCounts& counts,
+                                                     const RobustGround& ground);
+
 /// Labels of points, those below the ground counted apart.
 struct RobustLabels {
   Labels labels;
@@ -201,5 +217,13 @@ struct RobustLabels {
  */
 PCL_FFT_GROUND_CORE_EXPORT RobustLabels labelRobust(const PointsView& level_points,
                                                     const RobustGround& ground);
+
+/** How likely each point is of the ground, in [0, 1]: by its height above the surface (groundShares()); 1
+ * down to the depth tolerance below it, 0 deeper.
+ * \param level_points points in the level frame
+ * \param ground its shares are known; without cells all points are ground
+ */
+PCL_FFT_GROUND_CORE_EXPORT std::vector<float> groundProbability(const PointsView& level_points,
+                                                                const RobustGround& ground);
 
 }  // namespace pcl_fft_ground::core

@@ -88,7 +88,8 @@ po::options_description commandOptions() {
   add("max-cluster-size", po::value<long long>()->value_name("N"),
       "points of the largest segment (no limit)");
   add("height", po::bool_switch(),
-      "add the height above the ground [m] to labelled.pcd as a field 'height', NaN where a point is not "
+      "add to labelled.pcd the height above the ground [m] as a field 'height' and, with the robust "
+      "estimator, how likely the point is ground as 'p_ground', 0 to 1; both NaN where a point is not "
       "finite");
   add("classes", po::value<std::string>()->value_name("G,O,B"),
       "classes of ground, objects and objects below the ground in labelled.las (2,1,7)");
@@ -379,7 +380,10 @@ void segment(const po::variables_map& values) {
     throw UsageError("--classes: only a LAS file gets classes, and '" + input + "' is none");
   progress.begin("segment", "Separating ground from objects");
   Segmentation segmentation = segmentCloud(input, cloud, segmenter);
-  if (values["height"].as<bool>()) segmentation.heights = segmenter.filter->getHeightAboveGround();
+  if (values["height"].as<bool>()) {
+    segmentation.heights = segmenter.filter->getHeightAboveGround();
+    if (segmenter.fft != nullptr) segmentation.ground_probability = segmenter.fft->getGroundProbability();
+  }
   progress.begin("cluster", "Clustering the objects");
   chooseLengths(values, segmenter.cellSize(), clusters);
   clusterObjects(cloud, clusters, segmentation);

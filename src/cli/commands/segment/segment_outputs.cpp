@@ -125,6 +125,10 @@ pcl::PCLPointCloud2 labelledFields(const Cloud& cloud, const Segmentation& segme
     renameField(labelled, "height", "input_height");
     setFloatField(labelled, "height", {segmentation.heights.begin(), segmentation.heights.end()});
   }
+  if (!segmentation.ground_probability.empty()) {
+    renameField(labelled, "p_ground", "input_p_ground");
+    setFloatField(labelled, "p_ground", segmentation.ground_probability);
+  }
   return labelled;
 }
 

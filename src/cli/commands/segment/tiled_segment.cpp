@@ -255,6 +255,7 @@ class LabelCursor {
     core::Label label = core::Label::NEITHER;
     std::int32_t segment = 0;
     double height = NO_DATA;
+    float ground_probability = std::numeric_limits<float>::quiet_NaN();
   };
 
   /// \param level a point that is used, in the level frame
@@ -265,7 +266,7 @@ class LabelCursor {
     OfTile& tile = tiles_[t];
     if (tile.next == tile.end) refill(t);
     const std::size_t n = tile.next++ - tile.begin;
-    Found found{tile.labels[n], 0, static_cast<double>(tile.heights[n])};
+    Found found{tile.labels[n], 0, static_cast<double>(tile.heights[n]), tile.probabilities[n]};
     if (found.label == core::Label::OBJECT) found.segment = tile.segments[tile.next_object++];
     return found;
   }
@@ -276,7 +277,7 @@ class LabelCursor {
     std::size_t begin = 0, end = 0, next = 0;  // points of the tile
     std::size_t object = 0, next_object = 0;   // objects up to `end`, and in the piece
     std::vector<core::Label> labels;
-    std::vector<float> heights;
+    std::vector<float> heights, probabilities;
     std::vector<std::int32_t> segments;
   };
 
@@ -293,6 +294,8 @@ class LabelCursor {
     const auto at = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
     tile.labels.assign(all.labels.begin() + at(tile.begin), all.labels.begin() + at(tile.end));
     tile.heights.assign(all.heights.begin() + at(tile.begin), all.heights.begin() + at(tile.end));
+    tile.probabilities.assign(all.probabilities.begin() + at(tile.begin),
+                              all.probabilities.begin() + at(tile.end));
     const auto objects =
         static_cast<std::size_t>(std::count(tile.labels.begin(), tile.labels.end(), core::Label::OBJECT));
     tile.segments.assign(numbers.begin() + at(tile.object), numbers.begin() + at(tile.object + objects));
@@ -332,6 +335,7 @@ Segmentation segmentationOf(const TiledRun& run, const Cloud& cloud, LabelCursor
         break;
       case core::PointUse::FAR:
         found.label = core::Label::OBJECT;
+        found.ground_probability = 0;
         break;
       case core::PointUse::UNUSABLE:
         break;
@@ -339,6 +343,7 @@ Segmentation segmentationOf(const TiledRun& run, const Cloud& cloud, LabelCursor
     result.labels.push_back(found.label);
     result.segments.push_back(found.segment);
     result.heights.push_back(found.height);
+    result.ground_probability.push_back(found.ground_probability);
     if (found.label == core::Label::GROUND) result.ground.indices.push_back(static_cast<pcl::index_t>(n));
     if (found.label == core::Label::OBJECT) result.objects.indices.push_back(static_cast<pcl::index_t>(n));
   }
@@ -412,7 +417,7 @@ PointOutputs writePoints(const TiledRun& run, const PointCounts& expected, CellV
           add(core::compare(labelsBy(*run.site.meaning, part.labels), found.labels), *outputs.confusion);
         }
         if (las) las->write(first, found);
-        if (!run.request.heights) found.heights.clear();
+        if (!run.request.heights) found.heights.clear(), found.ground_probability.clear();
         const pcl::PCLPointCloud2 all = labelledFields(part.cloud, found);
         if (first == 0) {
           const auto width = static_cast<long long>(run.stream.records().width),
