@@ -36,7 +36,7 @@ struct TileLabels {
   std::vector<core::Label> labels;
   std::vector<float> heights;        ///< above the ground [m]
   std::vector<float> probabilities;  ///< of being ground
-  std::uint64_t below = 0;     ///< objects that lie below the ground
+  std::uint64_t below = 0;           ///< objects that lie below the ground
   std::uint64_t objects = 0;
 };
 TileLabels readLabels(const TileStore& store, std::size_t tile);

@@ -196,9 +196,9 @@ PCL_FFT_GROUND_CORE_EXPORT void widenTolerance(const RobustParameters& parameter
 /** How likely points above the ground are of it.
  *
  * Ground is as likely to lie above the middle of the ground's points as below it: of the points in a step
- * above, at least as many are ground as lie in the same step below. Objects rise from the ground and are about
- * as many in each step near their feet: what is more than in the steps beyond the ground is ground, too. The
- * shares fall with the height; where the counts do not, neighbouring steps have one share.
+ * above, at least as many are ground as lie in the same step below. Objects rise from the ground and are
+ * about as many in each step near their feet: what is more than in the steps beyond the ground is ground,
+ * too. The shares fall with the height; where the counts do not, neighbouring steps have one share.
  *
  * \param counts of the whole scan
  * \param ground its scale and depth tolerance are known
