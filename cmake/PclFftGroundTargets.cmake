@@ -12,13 +12,15 @@ function(pcl_fft_ground_compile_settings target)
     target_compile_options(${target} PRIVATE -fsanitize=${PCL_FFT_GROUND_SANITIZERS} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${PCL_FFT_GROUND_SANITIZERS})
   endif()
+  if(PCL_FFT_GROUND_COVERAGE)
+    target_link_options(${target} PUBLIC --coverage)
+  endif()
 endfunction()
 
 # pcl_fft_ground_count_lines(<target>): lets it count how often its lines run, where that was asked for.
 function(pcl_fft_ground_count_lines target)
   if(PCL_FFT_GROUND_COVERAGE)
     target_compile_options(${target} PRIVATE --coverage -fprofile-update=atomic)
-    target_link_options(${target} PUBLIC --coverage)
   endif()
 endfunction()
 

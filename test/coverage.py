@@ -20,8 +20,10 @@ def counts(build):
     lines = collections.defaultdict(lambda: collections.defaultdict(int))
     with tempfile.TemporaryDirectory() as folder:
         for first in range(0, len(data), 50):
-            subprocess.run(["gcov", "--json-format", "--preserve-paths", *data[first:first + 50]], cwd=folder,
-                           stdout=subprocess.DEVNULL, check=True)
+            gcov = subprocess.run(["gcov", "--json-format", "--preserve-paths", *data[first:first + 50]], cwd=folder,
+                                  capture_output=True, text=True)
+            if gcov.returncode != 0:  # a file was compiled anew since it was run
+                sys.exit(f"{gcov.stderr.strip()}\nDelete all *.gcda in {build} and run the tests again")
         for path in pathlib.Path(folder).glob("*.gcov.json.gz"):
             report = json.loads(gzip.open(path).read())
             for file in report["files"]:

@@ -17,9 +17,11 @@ CHECKOUT = pathlib.Path(__file__).resolve().parent.parent
 CORE = CHECKOUT / "src" / "core"
 TIME_LIMIT = 300  # [s]
 
-# What is looked for, and what takes its place; spaces on both sides keep templates and pointers out.
-FAULTS = [(r" < ", " <= "), (r" <= ", " < "), (r" > ", " >= "), (r" >= ", " > "), (r" == ", " != "), (r" \+ ", " - "),
-          (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "), (r" && ", " || "), (r" \|\| ", " && "), (r" \+= ", " -= "),
+# What is looked for, and what takes its place; spaces on both sides keep templates and pointers out. Bounds of loops are moved by
+# one; of real numbers that would be nothing, so that other comparisons are turned round.
+FAULTS = [(r"(?<=for \().* < ", lambda m: m[0][:-3] + " <= "), (r" < ", " >= "), (r" <= ", " > "), (r" > ", " <= "),
+          (r" >= ", " < "), (r" == ", " != "), (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "),
+          (r" && ", " || "), (r" \|\| ", " && "), (r" \+= ", " -= "),
           (r"\bstd::min\(", "std::max("), (r"\bstd::max\(", "std::min("), (r"(?<== )-(?=\w)", ""), (r"\breturn !", "return "),
           (r"(?<![\w.\"])(\d+\.\d+)(?![\w\"])", lambda m: str(1.5 * float(m[1]) or 0.5)),
           (r"(?<![\w.\"<\[])([1-9]\d*)(?![\w.\">])", lambda m: str(int(m[1]) + 1))]
