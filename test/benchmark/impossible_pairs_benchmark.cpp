@@ -1,5 +1,5 @@
 // How many alignments are accepted where none may be: scans of different places laid on each other, simulated
-// and real, scans seen in a mirror, and lattices that fit at many places. Every acceptance is wrong, and is
+// and real, scans seen in a mirror, and patterns that fit at many places. Every acceptance is wrong, and is
 // printed with what it takes to see it again.
 
 #include <pcl/console/print.h>
@@ -13,6 +13,7 @@
 #include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Request {
   Eigen::Index points = 12000;  ///< of a scan at most
   unsigned seed = 1, surveys = 4;
   std::string only;
+  std::optional<std::size_t> attempt;  ///< only this one of each family
 };
 
 /// A scan, and the place that it shows.
@@ -106,32 +108,68 @@ Family simulated(const char* name, core::SceneKind kind, const Request& request)
   return family;
 }
 
-/// A level floor with equal half spheres on a lattice of which a scan sees a window.
-Points latticeScan(double pitch, double skew, double noise, const Request& request, Random& random) {
-  constexpr double SIDE = 4, RADIUS = 0.14;
-  const double x0 = random.uniform(0, pitch), y0 = random.uniform(0, pitch);
+/// What repeats itself on a level floor.
+struct Pattern {
+  enum { LATTICE, RINGS, WAVES } kind = LATTICE;
+  double pitch = 0.5;   ///< between equal things; of rings along the circle 2.5 m wide [m]
+  double skew = 0;      ///< by which each row of a lattice is shifted, in pitches
+  double radius = 0.1;  ///< of the half spheres [m]; of waves twice the height
+  double noise = 0.001;
+
+  double heightAt(double x, double y) const {
+    const auto halfSphere = [this](double dx, double dy) {
+      return std::sqrt(std::max(0.0, radius * radius - dx * dx - dy * dy));
+    };
+    if (kind == WAVES)
+      return 0.5 * radius * std::cos(2 * M_PI * x / pitch) * std::cos(2 * M_PI * (y - skew * x) / pitch);
+    if (kind == RINGS) {
+      constexpr double BREADTH = 2.5, RADII[] = {0.8, 1.25, 1.7};
+      const double step = 2 * M_PI / std::round(M_PI * BREADTH / pitch);
+      const double angle = step * std::round(std::atan2(y, x) / step);
+      double height = 0;
+      for (const double ring : RADII)
+        height = std::max(height, halfSphere(x - ring * std::cos(angle), y - ring * std::sin(angle)));
+      return height;
+    }
+    const double row = std::round(y / pitch), shifted = x + skew * pitch * row;
+    return halfSphere(shifted - std::round(shifted / pitch) * pitch, y - row * pitch);
+  }
+};
+
+/// A window on a pattern, 4 m wide, at a place drawn; rings are seen from their centre.
+Points windowOn(const Pattern& pattern, const Request& request, Random& random) {
+  constexpr double SIDE = 4;
+  const bool has_centre = pattern.kind == Pattern::RINGS;
+  const double x0 = has_centre ? 0 : random.uniform(0, pattern.pitch),
+               y0 = has_centre ? 0 : random.uniform(0, pattern.pitch);
   Points points(3, request.points);
   for (Eigen::Index n = 0; n < points.cols(); ++n) {
-    const double x = random.uniform(0, SIDE), y = random.uniform(0, SIDE);
-    const double row = std::round((y + y0) / pitch);
-    const double dy = y + y0 - row * pitch, shifted = x + x0 + skew * pitch * row;
-    const double dx = shifted - std::round(shifted / pitch) * pitch;
-    const double height = std::sqrt(std::max(0.0, RADIUS * RADIUS - dx * dx - dy * dy));
-    points.col(n) = Eigen::Vector3d(x - SIDE / 2, y - SIDE / 2, height + random.normal(noise)).cast<float>();
+    const double x = random.uniform(-SIDE / 2, SIDE / 2), y = random.uniform(-SIDE / 2, SIDE / 2);
+    const double height = pattern.heightAt(x + x0, y + y0) + random.normal(pattern.noise);
+    points.col(n) = Eigen::Vector3d(x, y, height).cast<float>();
   }
   return points;
 }
 
-Family lattices(const Request& request) {
-  Family family{"lattices", {}, true};
+/// Patterns of a kind, so narrow that navigation allows several places at which each fits.
+Family repeated(const char* name, Pattern pattern, const Request& request) {
+  Family family{name, {}, true};
   Random random(request.seed, core::RandomStream::SELECTION);
-  constexpr int LATTICES = 8, WINDOWS = 5;
-  for (int n = 0; n < LATTICES; ++n) {
-    const double pitch = 0.4 + 0.03 * n, skew = 0.25 * (n % 3), noise = 0.001 * (1 + n % 3);
-    const std::string place = "lattice " + std::to_string(n);
+  constexpr int PATTERNS = 12, WINDOWS = 4;
+  for (int n = 0; n < PATTERNS; ++n) {
+    pattern.skew = 0.25 * (n % 3);
+    pattern.noise = 0.001 * (1 + n % 3);
+    if (pattern.kind == Pattern::RINGS) {
+      pattern.pitch = random.uniform(0.12, 0.17);  // 5.5 to 7.8 degrees
+      pattern.radius = random.uniform(0.03, 0.05);
+    } else {
+      pattern.pitch = random.uniform(0.35, 0.6);
+      pattern.radius = random.uniform(0.1, 0.35) * pattern.pitch;
+    }
+    const std::string place = std::string(name) + " " + std::to_string(n);
     for (int k = 0; k < WINDOWS; ++k)
-      family.scans.push_back(makeScan(place + "/" + std::to_string(k), place,
-                                      latticeScan(pitch, skew, noise, request, random), false));
+      family.scans.push_back(
+          makeScan(place + "/" + std::to_string(k), place, windowOn(pattern, request, random), false));
   }
   return family;
 }
@@ -206,7 +244,7 @@ struct Row {
 
 /// Tries one pair at any heading, ground on ground, the middles near each other.
 void tryPair(const Family& family, const Scan& moving, const core::ScanSegments& moving_scan,
-             const Scan& reference, Random& random, Row& row) {
+             const Scan& reference, const Request& request, Random& random, Row& row) {
   constexpr double FARTHEST = 0.25;  // of the smaller extent
   core::AlignmentParameters parameters;
   parameters.relief = core::ReliefUse::AUTO;
@@ -220,10 +258,11 @@ void tryPair(const Family& family, const Scan& moving, const core::ScanSegments&
   const Eigen::Isometry3d guess = Eigen::Translation3d(reference.middle + Eigen::Vector3d(x, y, 0)) *
                                   Eigen::AngleAxisd(heading * DEGREE, Eigen::Vector3d::UnitZ()) *
                                   Eigen::Translation3d(-middle);
+  if (request.attempt && *request.attempt != row.attempts++) return;
   const std::clock_t begun = std::clock();
   const core::Alignment alignment = core::alignScans(moving_scan, reference.described, guess, parameters);
   row.seconds += static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
-  ++row.attempts;
+  if (!request.attempt) ++row.attempts;
   if (!alignment.accepted) return;
   ++row.accepted;
   constexpr const char* METHODS[] = {"none", "segments", "dense", "relief"};
@@ -260,7 +299,8 @@ Row attemptAll(const Family& family, const Request& request) {
     };
     const Scan &moving = family.scans[draw()], &reference = family.scans[draw()];
     if (!mayBeLaidOnEachOther(family, moving, reference)) continue;
-    tryPair(family, moving, family.is_mirrored ? moving.mirrored : moving.described, reference, random, row);
+    tryPair(family, moving, family.is_mirrored ? moving.mirrored : moving.described, reference, request,
+            random, row);
   }
   print(family.name, family.scans.size(), row);
   return row;
@@ -275,7 +315,9 @@ void runAll(const Request& request) {
   if (wants("pipes")) families.push_back(simulated("pipes", core::SceneKind::PIPES, request));
   if (wants("wreck")) families.push_back(simulated("wreck", core::SceneKind::WRECK, request));
   if (wants("bare")) families.push_back(simulated("bare", core::SceneKind::BARE, request));
-  if (wants("lattices")) families.push_back(lattices(request));
+  if (wants("lattices")) families.push_back(repeated("lattices", {Pattern::LATTICE}, request));
+  if (wants("rings")) families.push_back(repeated("rings", {Pattern::RINGS}, request));
+  if (wants("waves")) families.push_back(repeated("waves", {Pattern::WAVES}, request));
   if (!request.data.empty()) {
     if (wants("windows")) families.push_back(windowsOfLand(request));
     if (wants("real pairs")) families.push_back(realPairs(request));
@@ -315,11 +357,13 @@ int main(int argc, char** argv) try {
   add("surveys", po::value(&request.surveys)->default_value(request.surveys), "simulated of each kind");
   add("seed", po::value(&request.seed)->default_value(request.seed), "of sites and guesses");
   add("only", po::value(&request.only)->default_value(""),
-      "a family by part of its name: pipes, wreck, bare, lattices, windows, real pairs");
+      "a family by part of its name: pipes, wreck, bare, lattices, rings, waves, windows, real pairs");
+  add("attempt", po::value<std::size_t>(), "only this one of each family, to see it again");
   add("help", "show this text");
   po::variables_map values;
   po::store(po::parse_command_line(argc, argv, options), values);
   po::notify(values);
+  if (values.count("attempt") != 0) request.attempt = values["attempt"].as<std::size_t>();
   if (values.count("help") != 0) {
     std::cout << options << "Every other attempt is by the wide search; relief is asked, too.\n";
     return 0;

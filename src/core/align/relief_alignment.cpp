@@ -23,24 +23,27 @@ constexpr double PI = 3.14159265358979323846;
 constexpr double DEGREE = PI / 180;
 
 // The constants of relief alignment.
-constexpr double CELL = 2.4;               // side of the finest cells [spacings]: some six points
-constexpr double MOST_CELLS = 400;         // along a side of the finest grid; larger scans get larger cells
-constexpr double MOST_SEARCHED = 1000;     // the same with all that navigation allows around it
-constexpr double FEWEST_CELLS = 16;        // along the shorter side of the coarsest grid
-constexpr std::size_t MOST_SCALES = 3;     // each with cells twice as large
-constexpr std::size_t PEAKS = 5;           // of each scale from which ICP starts
-constexpr int AROUND = 8;                  // starts of ICP around the guess...
-constexpr double HALF_WAY = 0.6;           // ...so far out, of what navigation allows
-constexpr double SETTLED = 1e-3;           // a smaller step of ICP is the last [spacings]
-constexpr double CORRELATED = 3;           // by which neighbouring heights share their errors
-constexpr double SLACK = 1.15;             // the last refinement may leave the bounds by so much
-constexpr double SAME = 0.5;               // poses that meet nearer than this are one [finest cells]
-constexpr double LEAST_OVERLAP = 0.10;     // share of the smaller scan
-constexpr double LARGEST_RESIDUAL = 1.0;   // in units of what noise and roughness explain
-constexpr double LEAST_EVIDENCE = 3;       // a twentieth of a chance pose as good among all that were tried
-constexpr double SURER = 0.15;             // deviation of the turn, of what navigation allows
-constexpr double LEAST_LEAD = 3;           // in evidence, over any rival whose surfaces fit, too
-constexpr double NEARLY_FITS = 1.15;       // residual of a rival, in the same units or over that of the best
+constexpr double CELL = 2.4;              // side of the finest cells [spacings]: some six points
+constexpr double MOST_CELLS = 400;        // along a side of the finest grid; larger scans get larger cells
+constexpr double MOST_SEARCHED = 1000;    // the same with all that navigation allows around it
+constexpr double FEWEST_CELLS = 16;       // along the shorter side of the coarsest grid
+constexpr std::size_t MOST_SCALES = 3;    // each with cells twice as large
+constexpr std::size_t PEAKS = 5;          // of each scale from which ICP starts
+constexpr int AROUND = 8;                 // starts of ICP around the guess...
+constexpr double HALF_WAY = 0.6;          // ...so far out, of what navigation allows
+constexpr double SETTLED = 1e-3;          // a smaller step of ICP is the last [spacings]
+constexpr double CORRELATED = 3;          // by which neighbouring heights share their errors
+constexpr double SLACK = 1.15;            // the last refinement may leave the bounds by so much
+constexpr double SAME = 0.5;              // poses that meet nearer than this are one [finest cells]
+constexpr double LEAST_OVERLAP = 0.10;    // share of the smaller scan
+constexpr double LARGEST_RESIDUAL = 1.0;  // in units of what noise and roughness explain
+constexpr double LEAST_EVIDENCE = 3;      // a twentieth of a chance pose as good among all that were tried
+constexpr double SURER = 0.15;            // deviation of the turn, of what navigation allows
+constexpr double LEAST_LEAD = 3;          // in evidence, over any rival whose surfaces fit, too
+constexpr double NEARLY_FITS = 1.15;      // residual of a rival, in the same units or over that of the best
+// A pattern that repeats correlates as well one pitch away; that less of it overlaps there says nothing.
+constexpr double AS_WELL = 0.9;            // of the best one's correlation makes a rival that fits one...
+constexpr double AS_MUCH = 0.5;            // ...if it overlaps by so much of what the best one does
 constexpr double LARGEST_DEVIATION = 0.4;  // predicted at the edge of the overlap [spacings]
 
 void check(const Eigen::Isometry3d& guess, const ReliefParameters& p) {
@@ -234,7 +237,9 @@ std::string reasonAgainst(const ReliefResult& result, const ReliefParameters& pa
   for (const ReliefPose& rival : result.rivals) {
     const bool fits = rival.residual < NEARLY_FITS * std::min(1.0, best.residual);
     const bool better = rival.residual < best.residual && rival.evidence > 0;
-    if (better || (fits && rival.evidence > best.evidence - LEAST_LEAD))
+    const bool repeats =
+        rival.correlation > AS_WELL * best.correlation && rival.overlap > AS_MUCH * best.overlap;
+    if (better || (fits && (repeats || rival.evidence > best.evidence - LEAST_LEAD)))
       return sentence("the relief fits as well elsewhere: the evidence", best.evidence, "there it is",
                       rival.evidence, "");
   }

@@ -25,9 +25,9 @@ constexpr Eigen::Index AT_A_GLANCE = 20;  // one in so many object points tells 
 constexpr double WORTH = 0.6;             // ...and, by its share of the best one's, what is worth a solution
 constexpr std::size_t MOST_PLACES = 24;   // that are glanced at, those with most segments on each other first
 constexpr std::size_t MOST_RIVALS = 3;    // that are solved, the best first
-constexpr double AS_WELL = 0.85;  // share of the best one's that makes another a rival, whatever it fails
-constexpr int BY_CHANCE = 12;     // places around a pose that tell what agrees by chance...
-constexpr double NEAREST = 6, FARTHEST = 16;  // ...so far from it [voxels]
+constexpr double AS_WELL = 0.85;  // share of the best one's that makes another a rival, whatever it fails...
+constexpr double AS_MUCH = 0.5;   // ...if so much is seen there, of what is in the best pose
+constexpr double DEGREE = 3.14159265358979323846 / 180;
 
 /// A hypothesis that ICP has made precise.
 struct Solution {
@@ -105,13 +105,9 @@ bool isBetter(const Solution& a, const Solution& b) {
 class BeyondChance {
  public:
   BeyondChance(const AlignmentScore& score, const Eigen::Isometry3d& pose, double voxel_size) {
-    constexpr double GOLDEN_ANGLE = 2.39996322972865332;
-    for (int n = 0; n < BY_CHANCE; ++n) {
-      const double distance = voxel_size * (NEAREST + (FARTHEST - NEAREST) * n / (BY_CHANCE - 1));
-      const Eigen::AngleAxisd heading(n * GOLDEN_ANGLE, Eigen::Vector3d::UnitZ());
-      const Eigen::Translation3d away(heading * Eigen::Vector3d(distance, 0, 0));
-      chance_ += score.of(away * pose, AT_A_GLANCE).score / BY_CHANCE;
-    }
+    const std::vector<Eigen::Isometry3d> places = placesAround(pose, voxel_size);
+    for (const Eigen::Isometry3d& place : places)
+      chance_ += score.of(place, AT_A_GLANCE).score / static_cast<double>(places.size());
   }
 
   /// \param agreement share of the objects seen by both that agree
@@ -122,17 +118,24 @@ class BeyondChance {
   double chance_ = 0;
 };
 
-/// True if another solution is nearly as good and elsewhere: things repeat themselves. Where it fits as well
-/// it does not matter whether it is precise enough to be accepted or just misses a gate.
+/// True if navigation may be that wrong about a place, or half as much again: its errors have tails.
+bool mayBe(const SearchGates& gates, const Eigen::Isometry3d& correction, const Eigen::Vector3d& place) {
+  const Eigen::Vector3d moved = correction * place - place;
+  return moved.head<2>().norm() < RIVALS_BEYOND * gates.max_shift &&
+         std::abs(moved.z()) < RIVALS_BEYOND * gates.max_rise &&
+         std::abs(yawOf(correction)) < RIVALS_BEYOND * gates.max_turn * DEGREE;
+}
+
+/// True if another solution is nearly as good and elsewhere: things repeat themselves. Where as much of both
+/// scans agrees as well it does not matter which gate that place misses.
 bool contradicts(const ScanPair& pair, const Solution& other, const Solution& best,
                  const BeyondChance& beyond) {
-  if (other.matches.size() < pair.parameters().min_matches) return false;
-  const Eigen::Vector3d place = best.icp.centre;
-  const Eigen::Vector3d elsewhere = other.icp.correction * (best.icp.correction.inverse() * place);
-  if ((elsewhere - place).norm() <= SAME_PLACE * pair.voxelSize()) return false;
-  if (meritOf(other) <= NEARLY * meritOf(best)) return false;
-  const bool as_well = beyond(other.agreement.score) > AS_WELL * beyond(best.agreement.score);
-  return other.refusal.empty() || (as_well && reasonAgainstMotion(pair, other.icp).empty());
+  const Eigen::Vector3d place = best.icp.correction.inverse() * best.icp.centre;
+  if ((other.icp.correction * place - best.icp.centre).norm() <= SAME_PLACE * pair.voxelSize()) return false;
+  if (other.refusal.empty() && meritOf(other) > NEARLY * meritOf(best)) return true;
+  return mayBe(pair.parameters().gates, other.icp.correction, place) &&
+         beyond(other.agreement.score) > AS_WELL * beyond(best.agreement.score) &&
+         static_cast<double>(other.agreement.points) > AS_MUCH * static_cast<double>(best.agreement.points);
 }
 
 /// Where the scan lies nearly as well as in the best pose, at a glance, the best first.
@@ -249,6 +252,20 @@ Alignment alignByRelief(const ScanPair& pair) {
 }
 
 }  // namespace
+
+const char* nameOf(AlignmentMethod method) {
+  switch (method) {
+    case AlignmentMethod::SEGMENTS:
+      return "segments";
+    case AlignmentMethod::DENSE:
+      return "dense";
+    case AlignmentMethod::RELIEF:
+      return "relief";
+    case AlignmentMethod::NONE:
+      break;
+  }
+  return "none";
+}
 
 double shareOfObjects(const ScanSegments& scan) {
   return static_cast<double>(scan.objects.cols()) /

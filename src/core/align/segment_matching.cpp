@@ -113,19 +113,19 @@ Adjacency consistentPairs(const std::vector<CandidateMatch>& candidates, const C
   return joined;
 }
 
-/// The shifts of a posed scan, in order, that put the centroid of a segment on that of another, within what
-/// navigation allows.
+/// The shifts of a posed scan, in order, that put the centroid of a segment on that of another.
 std::vector<Eigen::Vector3d> shiftsOfSegments(const ScanPair& pair, const Eigen::Isometry3d& pose,
                                               const Eigen::Vector3d& centre) {
   const SearchGates& gates = pair.parameters().gates;
   const Eigen::Vector3d moved = centre - pose.inverse() * centre;
-  const double farthest = gates.max_shift + ELSEWHERE * pair.voxelSize();
   std::vector<Eigen::Vector3d> shifts;
   for (const PlacedSegment& a : pair.moving())
     for (const PlacedSegment& b : pair.reference()) {
       const Eigen::Vector3d shift = b.centroid - pose * a.centroid;
       const Eigen::Vector3d total = moved + shift;
-      if (total.head<2>().norm() < farthest && std::abs(total.z()) < gates.max_rise) shifts.push_back(shift);
+      const bool may_be = total.head<2>().norm() < RIVALS_BEYOND * gates.max_shift &&
+                          std::abs(total.z()) < RIVALS_BEYOND * gates.max_rise;
+      if (may_be) shifts.push_back(shift);
     }
   std::sort(shifts.begin(), shifts.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);

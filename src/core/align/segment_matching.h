@@ -58,6 +58,9 @@ std::vector<std::vector<CandidateMatch>> findHypotheses(std::vector<CandidateMat
                                                         const AlignmentParameters& parameters,
                                                         double voxel_size);
 
+/// Rivals of a pose are looked for as far off as navigation may err, times this: its errors have tails.
+constexpr double RIVALS_BEYOND = 1.5;
+
 /** Where else a pose puts segments on segments, whatever these look like: every place at which a pattern
  * repeats itself, at the same heading, is one of these.
  *

@@ -26,6 +26,8 @@ constexpr double SHARE_FROM_ABOVE = 0.9;
 constexpr double LEAST_DIRECTION = 0.35;  // share that agrees in the worst direction: .45
 constexpr double AS_WELL = 0.95;          // share of the evidence that the planes' pose keeps
 constexpr double NEARLY = 0.7;            // of the best pose's evidence makes another a rival
+// At places around right poses there was .65 of their evidence at most, around wrong ones of lattices .92.
+constexpr double LIKE_ANYWHERE = 0.8;
 // At a first look, by few of the pieces and not yet at rest:
 constexpr double WORTH = 0.5;     // share of the best one's evidence that makes a place worth a second look
 constexpr double HOPELESS = 0.7;  // of the shares above, below which (beyond which) no second look mends it
@@ -141,6 +143,16 @@ std::string reasonAgainstObjects(const ScanPair& pair, const Eigen::Isometry3d& 
   return agree ? std::string() : "the objects do not agree";
 }
 
+/// True if a place near by, at which ICP would not stay, has nearly the evidence of the pose: any place
+/// would.
+bool isLikeAnyPlace(const ScanPair& pair, const SurfaceFit& fit, const Eigen::Isometry3d& pose) {
+  const double most = LIKE_ANYWHERE * fit.at(pose, Pieces::FEW).evidence;
+  const std::vector<Eigen::Isometry3d> places = placesAround(pose, pair.voxelSize());
+  return std::any_of(places.begin(), places.end(), [&](const Eigen::Isometry3d& place) {
+    return fit.at(place, Pieces::FEW).evidence > most;
+  });
+}
+
 /// Empty if the pose is held in every direction.
 std::string reasonAgainstPrecision(const ScanPair& pair, const IcpResult& icp) {
   const std::optional<Matrix6d> covariance = covarianceAboutCentre(icp);
@@ -187,7 +199,8 @@ Alignment alignSurfaces(const ScanPair& pair, const std::vector<Eigen::Isometry3
     return other.evidence.evidence > NEARLY * best.evidence.evidence &&
            fit.displacement(best.icp.correction, other.icp.correction) > ELSEWHERE * pair.voxelSize();
   });
-  if (reason.empty() && has_rival) reason = "the surfaces fit nearly as well elsewhere";
+  if (reason.empty() && (has_rival || isLikeAnyPlace(pair, fit, best.icp.correction)))
+    reason = "the surfaces fit nearly as well elsewhere";
   if (!reason.empty()) return refused(pair, reason);
   Alignment result = alignmentOf(pair, polished(pair, fit, best), AlignmentMethod::DENSE);
   result.accepted = true;

@@ -64,6 +64,18 @@ Agreement AlignmentScore::of(const Eigen::Isometry3d& correction, Eigen::Index o
   return {static_cast<double>(agreeing) / static_cast<double>(seen), seen};
 }
 
+std::vector<Eigen::Isometry3d> placesAround(const Eigen::Isometry3d& pose, double voxel_size) {
+  constexpr int COUNT = 12;
+  constexpr double NEAREST = 6, FARTHEST = 16, GOLDEN_ANGLE = 2.39996322972865332;
+  std::vector<Eigen::Isometry3d> places;
+  for (int n = 0; n < COUNT; ++n) {
+    const double distance = voxel_size * (NEAREST + (FARTHEST - NEAREST) * n / (COUNT - 1));
+    const Eigen::AngleAxisd heading(n * GOLDEN_ANGLE, Eigen::Vector3d::UnitZ());
+    places.emplace_back(Eigen::Translation3d(heading * Eigen::Vector3d(distance, 0, 0)) * pose);
+  }
+  return places;
+}
+
 double overlapOf(const ScanPair& pair, const Eigen::Isometry3d& correction) {
   return overlapShare(pair.referenceScan().coverage, pair.movingScan().coverage,
                       correction * pair.initialGuess());

@@ -39,6 +39,10 @@ class AlignmentScore {
   std::unique_ptr<NearestNeighbours> reference_search_;
 };
 
+/// Poses that differ from one by horizontal shifts of 6 to 16 voxels, every way: what fits there fits by
+/// chance.
+std::vector<Eigen::Isometry3d> placesAround(const Eigen::Isometry3d& pose, double voxel_size);
+
 /// Share of the smaller scan's area that both have seen, under a correction of the initial guess.
 double overlapOf(const ScanPair& pair, const Eigen::Isometry3d& correction);
 

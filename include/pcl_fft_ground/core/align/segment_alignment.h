@@ -91,6 +91,9 @@ struct SegmentMatch {
 /// How a transform was found.
 enum class AlignmentMethod { NONE, SEGMENTS, DENSE, RELIEF };
 
+/// "none", "segments", "dense" or "relief".
+PCL_FFT_GROUND_CORE_EXPORT const char* nameOf(AlignmentMethod method);
+
 /** The result for a pair of scans. A refusal is a result, too: the transform then is the initial guess. */
 struct Alignment {
   Eigen::Isometry3d reference_from_moving = Eigen::Isometry3d::Identity();  ///< places the moving scan

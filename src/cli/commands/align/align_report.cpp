@@ -84,20 +84,6 @@ std::string panelTitle(const AlignedPair& pair, const ordered_json& report) {
 
 }  // namespace
 
-const char* nameOf(core::AlignmentMethod method) {
-  switch (method) {
-    case core::AlignmentMethod::SEGMENTS:
-      return "segments";
-    case core::AlignmentMethod::DENSE:
-      return "dense";
-    case core::AlignmentMethod::RELIEF:
-      return "relief";
-    case core::AlignmentMethod::NONE:
-      break;
-  }
-  return "none";
-}
-
 Eigen::Isometry3d transformOfFiles(const AlignedPair& pair) {
   return Eigen::Translation3d(pair.reference.cloud.origin) * pair.icp.getAlignment().reference_from_moving *
          Eigen::Translation3d(-pair.moving.cloud.origin);

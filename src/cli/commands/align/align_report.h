@@ -26,9 +26,6 @@ struct AlignedPair {
   SegmentICP<Point, Point> icp;  ///< has aligned the clouds' points
 };
 
-/// "segments", "dense" or "none".
-const char* nameOf(core::AlignmentMethod method);
-
 /// The transform between the coordinates of the two files, origins included.
 Eigen::Isometry3d transformOfFiles(const AlignedPair& pair);
 
