@@ -5,12 +5,14 @@
 #include <pybind11/stl.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "pcl_fft_ground/segment_icp.h"
@@ -22,6 +24,7 @@ namespace {
 
 namespace py = pybind11;
 using Point = pcl::PointXYZ;
+using Place = std::array<double, 3>;
 
 /// What align() returns.
 struct AlignedScans {
@@ -130,8 +133,30 @@ Eigen::Isometry3d toRigidMotion(const py::object& given, const char* name) {
   return Eigen::Translation3d(matrix.topRightCorner<3, 1>()) * Eigen::Quaterniond(rotation).normalized();
 }
 
+/// Where both sensors stood, or each: that of the reference first.
+using SensorArgument = std::optional<std::variant<Place, std::array<Place, 2>>>;
+
+/// Where the sensors stood, in the coordinates of the arrays, if it was told.
+struct Sensors {
+  std::optional<Eigen::Vector3d> reference, moving;
+};
+
+/// \throws std::invalid_argument (Python: ValueError) if they are not finite
+Sensors toSensors(const SensorArgument& given) {
+  if (!given) return {};
+  const auto vector = [](const Place& place) {
+    const Eigen::Vector3d sensor(place.data());
+    if (!sensor.allFinite()) throw std::invalid_argument("sensor: must be finite numbers");
+    return sensor;
+  };
+  if (const Place* both = std::get_if<Place>(&*given)) return {vector(*both), vector(*both)};
+  const auto& each = std::get<std::array<Place, 2>>(*given);
+  return {vector(each[0]), vector(each[1])};
+}
+
 AlignedScans align(const py::array& reference, const py::array& moving, const py::object& guess,
-                   std::optional<double> max_object_size, const py::kwargs& given) {
+                   std::optional<double> max_object_size, const SensorArgument& sensor,
+                   const py::kwargs& given) {
   py::dict options(given);
   const Settings settings = takeSettings(options);
   if (max_object_size) options["max_object_size"] = *max_object_size;
@@ -142,6 +167,11 @@ AlignedScans align(const py::array& reference, const py::array& moving, const py
       guess.is_none() ? Eigen::Isometry3d::Identity() : toRigidMotion(guess, "guess");
   const PointArray target = toPoints(reference, "reference"), source = toPoints(moving, "moving");
 
+  const auto placedIn = [](const PointArray& points, const std::optional<Eigen::Vector3d>& place) {
+    return place ? std::optional<Eigen::Vector3d>(*place - points.origin) : std::nullopt;
+  };
+  const Sensors sensors = toSensors(sensor);
+
   SegmentICP<Point, Point> icp;
   AlignedScans result;
   {
@@ -151,6 +181,7 @@ AlignedScans align(const py::array& reference, const py::array& moving, const py
     icp.setSegmentParameters(settings.segments);
     icp.setGroundSegmentation(segmentation, segmentation);
     icp.setInputSource(source.points);
+    icp.setSensorPosition(placedIn(source, sensors.moving), placedIn(target, sensors.reference));
     icp.setInputTarget(target.points);
     result.alignment = icp.computeAlignment(Eigen::Translation3d(-target.origin) * reference_from_moving *
                                             Eigen::Translation3d(source.origin));
@@ -161,20 +192,6 @@ AlignedScans align(const py::array& reference, const py::array& moving, const py
   found = Eigen::Translation3d(target.origin) * found * Eigen::Translation3d(-source.origin);
   result.origin = target.origin;
   return result;
-}
-
-const char* nameOf(core::AlignmentMethod method) {
-  switch (method) {
-    case core::AlignmentMethod::SEGMENTS:
-      return "segments";
-    case core::AlignmentMethod::DENSE:
-      return "dense";
-    case core::AlignmentMethod::RELIEF:
-      return "relief";
-    case core::AlignmentMethod::NONE:
-      break;
-  }
-  return "none";
 }
 
 }  // namespace
@@ -207,12 +224,14 @@ void defineAlignment(py::module_& module) {
           "what the transform comes from: 'segments', 'dense', 'relief' or 'none'");
 
   module.def("align", &align, py::arg("reference"), py::arg("moving"), py::arg("guess") = py::none(),
-             py::arg("max_object_size") = py::none(),
+             py::arg("max_object_size") = py::none(), py::arg("sensor") = py::none(),
              R"(Aligns two overlapping scans by the objects in them, or says why it does not.
 
 reference, moving: N x 3 float32 or float64 [m], z roughly up, strided views too; what is not finite is left out.
 guess: 4 x 4, reference_from_moving as far as it is known (navigation); no motion if None.
 max_object_size: size of the largest object [m]; half of the scan's smaller extent if None.
+sensor: where the sensors stood, three numbers for both or two times three, reference and moving: what a scan could
+    have seen is then judged by ray.
 
 Other keyword arguments are the command's options with _ in place of -:
 search: 'navigation' (the guess is right to 0.6 m and 8 degrees) or 'wide' (to 2.5 m and 25).

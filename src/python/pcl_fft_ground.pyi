@@ -92,6 +92,7 @@ def align(
     moving: Union[npt.NDArray[np.float32], npt.NDArray[np.float64]],
     guess: Optional[npt.ArrayLike] = ...,
     max_object_size: Optional[float] = ...,
+    sensor: Optional[Union[Sequence[float], Sequence[Sequence[float]]]] = ...,
     *,
     search: Optional[str] = ...,
     matching: Optional[str] = ...,

@@ -171,7 +171,7 @@ class Segment(unittest.TestCase):
             np.savetxt(cloud, xyz, fmt="%.17g")
             for options in ({}, {"method": "fft-lowpass", "height_tolerance": 0.02}, {"max_slope": 0.5},
                             {"clusters": "contact"}):
-                words = [w for k, v in options.items() for w in ("--" + k.replace("_", "-"), str(v))]
+                words = [w for k, v in options.items() for w in ("--" + k.replace("_", "-"), *np.ravel(v).astype(str))]
                 out = os.path.join(folder, "out")
                 subprocess.run(
                     [os.environ["PCL_FFT_GROUND_COMMAND"], "segment", cloud, "-o", out, "--quiet",
@@ -282,6 +282,7 @@ class Align(unittest.TestCase):
             (dict(fallback="any"), "fallback"), (dict(relief="on"), "relief"), (dict(max_sigma=0.0), "sigma"),
             (dict(min_score=2.0), "score"), (dict(min_matches=0), "match"), (dict(max_shift=-1.0), "shift"),
             (dict(max_turn=500.0), "turn"), (dict(max_object_size=-1.0), "max_object_size"),
+            (dict(sensor=(0.0, np.nan, 1.0)), "sensor"),
             (dict(moving=small[:, :2]), "moving"), (dict(reference=small.astype(int)), "reference"),
         ]:
             arguments = dict(reference=small, moving=small)
@@ -302,11 +303,13 @@ class Align(unittest.TestCase):
             for moving, options in ((self.moving, {}), (self.moving, {"max_shift": 0.05}),
                                     (self.moving, {"matching": "plain", "search": "wide", "voxel_size": 0.03}),
                                     (self.moving, {"min_matches": 1000, "relief": "off"}),
+                                    (self.moving, {"min_matches": 1000, "sensor": (0.0, 0.5, 4.0)}),
+                                    (self.moving, {"sensor": ((0.0, 0.5, 4.0), (1.0, 0.0, -5.0))}),
                                     (other_site, {"fallback": "none"}), (other_site, {})):
                 files = [os.path.join(folder, name) for name in ("reference.xyz", "moving.xyz")]
                 for file, xyz in zip(files, (self.reference, moving)):
                     np.savetxt(file, xyz, fmt="%.17g")
-                words = [w for k, v in options.items() for w in ("--" + k.replace("_", "-"), str(v))]
+                words = [w for k, v in options.items() for w in ("--" + k.replace("_", "-"), *np.ravel(v).astype(str))]
                 out = os.path.join(folder, "out")
                 subprocess.run([os.environ["PCL_FFT_GROUND_COMMAND"], "align", *files, "-o", out, "--quiet",
                                 "--max-object-size", "1", *words], check=True)
