@@ -140,8 +140,17 @@ py::dict choicesOf(const Filter& filter) {
   return choices;
 }
 
+/// The filter's warnings, and that of no segment.
+std::vector<std::string> warningsOf(const Filter& filter, const Result& result, unsigned min_cluster_size) {
+  std::vector<std::string> warnings = filter.getWarnings();
+  if (result.clusters.empty() && result.objects.indices.size() >= min_cluster_size)
+    warnings.push_back("no segment has " + std::to_string(min_cluster_size) +
+                       " points: a larger leaf_size or a smaller min_cluster_size may help");
+  return warnings;
+}
+
 py::dict reportOf(const std::string& method, const Filter& filter, const PointArray& xyz,
-                  const Result& result) {
+                  const Result& result, unsigned min_cluster_size) {
   const std::size_t ground = result.ground.indices.size(), objects = result.objects.indices.size();
   py::dict report;
   report["version"] = PCL_FFT_GROUND_VERSION;
@@ -154,7 +163,7 @@ py::dict reportOf(const std::string& method, const Filter& filter, const PointAr
   report["segments"] = result.clusters.size();
   report["origin"] = std::vector<double>{xyz.origin.x(), xyz.origin.y(), xyz.origin.z()};
   report["chosen"] = choicesOf(filter);
-  report["warnings"] = filter.getWarnings();
+  report["warnings"] = warningsOf(filter, result, min_cluster_size);
   return report;
 }
 
@@ -202,7 +211,7 @@ Segmentation segment(const py::array& xyz, std::optional<double> max_object_size
   segmentation.segments = segmentsOf(count, result);
   segmentation.surface = filter->getGroundSurface();
   segmentation.surface.frame_from_input.translate(-points.origin);
-  segmentation.report = reportOf(method, *filter, points, result);
+  segmentation.report = reportOf(method, *filter, points, result, min_cluster_size);
   return segmentation;
 }
 

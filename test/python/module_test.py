@@ -87,6 +87,13 @@ class Segment(unittest.TestCase):
         np.testing.assert_array_equal(np.flatnonzero(np.isnan(result.p_ground)), [10, 20])
         self.assertEqual(result.report["neither"], 2)
 
+    def test_objects_without_a_segment_are_warned_of(self):
+        xyz, _ = sea_floor()
+        report = pcl_fft_ground.segment(xyz, 1.0, leaf_size=1e-4).report
+        self.assertEqual(report["segments"], 0)
+        self.assertIn("leaf_size", report["warnings"][-1])
+        self.assertEqual(pcl_fft_ground.segment(xyz, 1.0).report["warnings"], [])
+
     def test_no_points_give_no_labels(self):
         self.assertEqual(pcl_fft_ground.segment(np.zeros((0, 3)), 1.0).labels.shape, (0,))
 
