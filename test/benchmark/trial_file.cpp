@@ -15,8 +15,7 @@ void TrialFile::add(const std::string& row, const Trial& trial, const TrialOutco
   const pcl_fft_ground::core::Alignment& alignment = outcome.alignment;
   const double sigma = std::sqrt(alignment.covariance(0, 0) + alignment.covariance(1, 1));
   file_ << std::quoted(row) << ',' << trial.name << ',' << alignment.accepted << ','
-        << nameOf(alignment.method) << ',' << outcome.error << ',' << outcome.turn << ','
-        << outcome.wrong() << ',' << alignment.score << ',' << alignment.overlap << ','
-        << alignment.matches.size() << ',' << sigma << ',' << std::quoted(alignment.refusal, '"', '"')
-        << '\n';
+        << nameOf(alignment.method) << ',' << outcome.error << ',' << outcome.turn << ',' << outcome.wrong()
+        << ',' << alignment.score << ',' << alignment.overlap << ',' << alignment.matches.size() << ','
+        << sigma << ',' << std::quoted(alignment.refusal, '"', '"') << '\n';
 }

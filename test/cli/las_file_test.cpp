@@ -1,7 +1,9 @@
 // LAS files: read, refused where they lie, and written with other classes.
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 #include "cloud_file_fixture.h"
@@ -69,6 +71,48 @@ TEST_F(CloudFile, LasClassesAreTruth) {
   EXPECT_EQ(readCloud(path, options).labels, (std::vector<int>{2, 2, 0, 0, 2, 2, 1, 1}));
   options.ignored_classes = std::vector<int>{5};
   EXPECT_EQ(readCloud(path, options).labels, (std::vector<int>{1, 1, 0, 0, 1, 1, 2, 1}));
+}
+
+/// A LAS file with one record in front of its points.
+std::string withRecord(std::string file, std::uint16_t id, const std::string& data) {
+  const auto put = [](std::string& bytes, std::size_t at, auto number) {
+    std::memcpy(bytes.data() + at, &number, sizeof number);
+  };
+  std::string record(54, '\0');
+  const std::string user = "LASF_Projection";
+  std::copy(user.begin(), user.end(), record.begin() + 2);
+  put(record, 18, id);
+  put(record, 20, static_cast<std::uint16_t>(data.size()));
+  record += data;
+  std::uint16_t header_bytes = 0;
+  std::uint32_t points_begin = 0;
+  std::memcpy(&header_bytes, file.data() + 94, sizeof header_bytes);
+  std::memcpy(&points_begin, file.data() + 96, sizeof points_begin);
+  put(file, 96, points_begin + static_cast<std::uint32_t>(record.size()));
+  put(file, 100, std::uint32_t{1});
+  return file.insert(header_bytes, record);
+}
+
+TEST_F(CloudFile, LasOfAGeographicSystemIsRemarkedOn) {
+  constexpr std::uint16_t WKT = 2112, GEO_KEYS = 34735;
+  const std::string file = lasFile(0, 2, {{{0, 0, 0}, 1}, {{1, 1, 0}, 2}});
+  const auto keys = [](std::uint16_t key, std::uint16_t code) {
+    const std::array<std::uint16_t, 8> numbers{1, 1, 0, 1, key, 0, 1, code};
+    return std::string(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+  };
+  const auto isRemarkedOn = [&](std::uint16_t id, const std::string& data) {
+    const Cloud cloud = readCloud(makeFile("a.las", withRecord(file, id, data)));
+    EXPECT_EQ(cloud.points->size(), 2U);
+    return cloud.remarks.size() == 1 && cloud.remarks[0].find("degrees") != std::string::npos;
+  };
+  const std::string degrees =
+      R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]]])";
+  EXPECT_TRUE(isRemarkedOn(GEO_KEYS, keys(2048, 4326)));
+  EXPECT_FALSE(isRemarkedOn(GEO_KEYS, keys(3072, 32633)));
+  EXPECT_TRUE(isRemarkedOn(WKT, degrees));
+  EXPECT_TRUE(isRemarkedOn(WKT, "COMPD_CS[\"a\"," + degrees + ",VERT_CS[\"b\"]]"));
+  EXPECT_FALSE(isRemarkedOn(WKT, "PROJCS[\"c\"," + degrees + ",PROJECTION[\"Transverse_Mercator\"]]"));
+  EXPECT_FALSE(isRemarkedOn(WKT, "nonsense"));
 }
 
 TEST_F(CloudFile, LasTruncatedAnywhereIsRefused) {
@@ -234,13 +278,17 @@ TEST_F(CloudFile, KnownLasFilesAreReadAsCounted) {
     };
     const auto [low_x, high_x] = boundsOf("x", cloud.origin.x());
     const auto [low_z, high_z] = boundsOf("z", cloud.origin.z());
+    const bool is_geographic = std::string(file.name) == "test_epsg_4326.las";
+    EXPECT_EQ(std::count_if(cloud.remarks.begin(), cloud.remarks.end(),
+                            [](const std::string& r) { return r.find("degrees") != std::string::npos; }),
+              is_geographic ? 1 : 0);
     EXPECT_NEAR(low_x, file.low_x, 1e-3);
     EXPECT_NEAR(high_x, file.high_x, 1e-3);
     EXPECT_NEAR(low_z, file.low_z, 1e-3);
     EXPECT_NEAR(high_z, file.high_z, 1e-3);
     const std::vector<float> classes = floatsOf(cloud.fields, "classification");
     EXPECT_EQ(static_cast<std::size_t>(std::count(classes.begin(), classes.end(), 2.0f)), file.of_class_2);
-    EXPECT_TRUE(cloud.remarks.empty());
+    EXPECT_EQ(cloud.remarks.empty(), !is_geographic);
   }
   EXPECT_NE(errorOf(folder + "1.2-no-points.las").find("truncated"), std::string::npos);
   EXPECT_NE(errorOf(folder + "no-points.las").find("holds no points"), std::string::npos);

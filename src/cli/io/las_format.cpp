@@ -230,12 +230,24 @@ std::string crsOf(std::string_view content, const LasHeader& header) {
   return by_key;
 }
 
+/// Whether x and y are degrees: WKT of a geographic system that is not projected, or a code of the block that
+/// the GeoTIFF specification gives to such systems, 4000 to 4999.
+bool isGeographic(std::string_view crs) {
+  const auto names = [&](std::string_view word) { return crs.find(word) != std::string_view::npos; };
+  if (crs.substr(0, 6) == "EPSG:4") return crs.size() == std::string_view("EPSG:4999").size();
+  return (names("GEOGCS") || names("GEOGCRS")) && !names("PROJCS") && !names("PROJCRS");
+}
+
 RawCloud decodePoints(std::string_view body, const LasHeader& header, std::size_t points,
                       const std::string& crs) {
   RawCloud cloud;
   cloud.label_scheme = LabelScheme::ASPRS;
   cloud.crs = crs;
   if (!header.remark.empty()) cloud.remarks.push_back(header.remark);
+  if (isGeographic(crs))
+    cloud.remarks.push_back(
+        "its coordinate reference system is geographic: x and y are degrees, and no lengths can be right; "
+        "project the points first, as with filters.reprojection of PDAL");
   cloud.table = joined(computedFields(body, header, points),
                        readRecords(body, header.record_bytes, plainFields(header), points));
   cloud.withheld.resize(points);

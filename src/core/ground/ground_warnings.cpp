@@ -244,7 +244,12 @@ std::vector<std::string> warningsAbout(const RobustGround& ground, const PointsV
                                   << " m exceeds the extent of the scan, " << ground.extent
                                   << " m: are the coordinates in metres, not in kilometres or degrees? see "
                                      "--max-object-size");
-  if (level_points.cols() < FEWEST_POINTS) return warnings;
+  if (level_points.cols() < FEWEST_POINTS) {
+    if (std::find(labels.begin(), labels.end(), Label::GROUND) == labels.end())
+      warnings.push_back(Sentence() << "no point was found to be ground: see --max-object-size, "
+                                    << ground.max_object_size << " m, and --up-direction");
+    return warnings;
+  }
   Findings found{ground, level_points, labels, parameters, {}};
   found.size = ground.max_object_size;
   found.widest = (ground.bounds.high - ground.bounds.low).head<2>().maxCoeff();

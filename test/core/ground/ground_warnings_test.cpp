@@ -63,6 +63,15 @@ TEST(GroundWarnings, AreNoneForNoPointsAndForFew) {
   EXPECT_TRUE(warningsOf(scanOf(6, 5, 20, landWithBoxes), 2).empty());
 }
 
+TEST(GroundWarnings, TellThatNoPointIsGround) {
+  const Points points = scanOf(6, 5, 20, landWithBoxes);
+  RobustParameters parameters;
+  parameters.max_object_size = 2;
+  const RobustGround ground = estimateRobustGround(points, Eigen::Isometry3d::Identity(), parameters);
+  expectOne(warningsAbout(ground, points, Labels(20, Label::OBJECT), parameters),
+            {"no point", "--max-object-size, 2 m", "--up-direction"});
+}
+
 TEST(GroundWarnings, TellAnotherUnit) {
   const Points metres = scanOf(60, 50, 30000, landWithBoxes);
   expectOne(warningsOf(1000 * metres, 5), {"largest object, 5 m", "metres", "--max-object-size"});

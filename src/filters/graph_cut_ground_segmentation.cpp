@@ -1,9 +1,0 @@
-#include <pcl/point_types.h>
-#include <pcl/impl/instantiate.hpp>
-
-#include "pcl_fft_ground/impl/graph_cut_ground_segmentation.hpp"
-
-PCL_INSTANTIATE(ExternGroundSegmentation, PCL_XYZ_POINT_TYPES)
-PCL_INSTANTIATE_ExternGroundSegmentation(pcl::PCLPointCloud2)
-    PCL_INSTANTIATE(GraphCutGroundSegmentation, PCL_XYZ_POINT_TYPES)
-        PCL_INSTANTIATE_GraphCutGroundSegmentation(pcl::PCLPointCloud2)
