@@ -80,6 +80,14 @@ TEST(RobustUncertainty, BeyondTheLastGroundItIsGreaterThanBetween) {
   EXPECT_GT(between(49, 30), 3 * SPREAD);
 }
 
+TEST(RobustUncertainty, RowsAndColumnsAreAlike) {
+  const Eigen::ArrayXXd rolling =
+      heightsOf([](double x, double y) { return 0.2 * std::sin(2 * x) * std::cos(1.5 * y); });
+  const Eigen::ArrayXXd distance = distanceAcross(40, 59);
+  const Eigen::ArrayXXd across = uncertaintyOf(rolling.transpose(), distance.transpose());
+  EXPECT_LT((across.transpose() - uncertaintyOf(rolling, distance)).abs().maxCoeff(), 1e-12);
+}
+
 TEST(RobustUncertainty, IsFiniteWithoutEnoughGround) {
   const Eigen::ArrayXXd one_cell = Eigen::ArrayXXd::Constant(1, 1, 2.0);
   EXPECT_EQ(uncertaintyOf(one_cell, Eigen::ArrayXXd::Zero(1, 1))(0, 0), SPREAD);
