@@ -3,12 +3,12 @@
 #
 #   cmake/install_dependencies.sh PURPOSE...
 #
-#   library tool python tests packages benchmarks fftw documentation style fresh-system
+#   library tool python tests packages benchmarks fftw documentation style fuzz fresh-system
 #
 # Root is asked for (by sudo) only when something is missing. PCL_FFT_GROUND_SKIP_INSTALL=1 skips the whole step.
 set -eu
 
-purposes="library tool python tests packages benchmarks fftw documentation style fresh-system"
+purposes="library tool python tests packages benchmarks fftw documentation style fuzz fresh-system"
 
 fail() {
   echo "install_dependencies.sh: $*" >&2
@@ -22,6 +22,7 @@ commands_of() {
     packages) echo "dpkg-shlibdeps:dpkg-dev file:file lintian:lintian" ;;
     documentation) echo "doxygen:doxygen" ;;
     style) echo "git:git clang-format:clang-format clang-tidy:clang-tidy" ;;
+    fuzz) echo "clang++:clang" ;;
     fresh-system) echo "git:git debootstrap:debootstrap unshare:util-linux" ;;
   esac
 }
@@ -35,15 +36,17 @@ packages_of() {
     tests) echo "libgtest-dev xvfb xauth gdal-bin" ;;
     benchmarks) echo "libbenchmark-dev" ;;
     fftw) echo "libfftw3-dev" ;;
-    packages | documentation | style | fresh-system) ;;
+    packages | documentation | style | fuzz | fresh-system) ;;
     *) fail "unknown purpose '$1' (allowed: $purposes)" ;;
   esac
 }
 
-# optional_packages_of PURPOSE: installed where the system has them; Debian 12 has no LASzip.
+# optional_packages_of PURPOSE: installed where the system has them; Debian 12 has no LASzip, and Ubuntu 22.04 has libFuzzer in
+# clang itself.
 optional_packages_of() {
   case "$1" in
     tool) echo "liblaszip-dev" ;;
+    fuzz) echo "libclang-rt-$(apt-cache show clang 2>/dev/null | sed -n 's/^Version: [0-9]*:\([0-9]*\)\..*/\1/p' | head -n 1)-dev" ;;
   esac
 }
 
