@@ -155,21 +155,6 @@ double largestDeviation(const std::vector<PoseGraphEdge>& edges,
   return largest;
 }
 
-/// The blocks of the inverse on the diagonal: one covariance a node; nothing where the matrix has no inverse.
-std::vector<MotionCovariance> covariancesOf(const PoseGraphEquations& equations) {
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky(equations.matrix());
-  std::vector<MotionCovariance> covariances;
-  if (cholesky.info() != Eigen::Success) return covariances;
-  const Eigen::Index unknowns = equations.rightHandSide().size();
-  for (Eigen::Index first = 0; first < unknowns; first += 6) {
-    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(unknowns, 6);
-    unit.middleRows<6>(first).setIdentity();
-    const Eigen::MatrixXd columns = cholesky.solve(unit);
-    covariances.push_back(columns.middleRows<6>(first));
-  }
-  return covariances;
-}
-
 /// The motion of each node, in its own frame, that solves the linearised problem; six numbers a node.
 Eigen::VectorXd gaussNewtonStep(const PoseGraphEquations& equations) {
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky(equations.matrix());
@@ -205,9 +190,25 @@ PoseGraphSolution solvePoseGraph(const std::vector<Eigen::Isometry3d>& start,
     widening = std::max(1.0, widening / TIGHTENING);
     solution.converged = is_final_kernel && step.cwiseAbs().maxCoeff() < SMALL_STEP;
   }
-  solution.covariances =
-      covariancesOf(PoseGraphEquations(solution.world_from_node, edges, solution.edge_weights, priors));
   return solution;
+}
+
+/// The blocks of the inverse on the diagonal.
+std::vector<MotionCovariance> poseCovariances(const PoseGraphSolution& solution,
+                                              const std::vector<PoseGraphEdge>& edges,
+                                              const std::vector<PosePrior>& priors) {
+  const PoseGraphEquations equations(solution.world_from_node, edges, solution.edge_weights, priors);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky(equations.matrix());
+  std::vector<MotionCovariance> covariances;
+  if (cholesky.info() != Eigen::Success || !(cholesky.vectorD().minCoeff() > 0)) return covariances;
+  const Eigen::Index unknowns = equations.rightHandSide().size();
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(unknowns, 6);
+  for (Eigen::Index first = 0; first < unknowns; first += 6) {
+    unit.middleRows<6>(first).setIdentity();
+    covariances.push_back(cholesky.solve(unit).middleRows<6>(first));
+    unit.middleRows<6>(first).setZero();
+  }
+  return covariances;
 }
 
 }  // namespace pcl_fft_ground::core

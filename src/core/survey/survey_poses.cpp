@@ -201,7 +201,6 @@ SurveyPoses solveSurvey(const std::vector<SurveyScan>& scans, const std::vector<
   for (std::size_t i = 0; i < scans.size(); ++i) priors.push_back(priorOf(i, scans[i]));
   const PoseGraphSolution solution = solvePoseGraph(poses.navigation, edges, priors);
   poses.global = solution.world_from_node;
-  poses.covariances = solution.covariances;
   poses.edges = all.size();
   poses.rejected_edges =
       all.size() - edges.size() +

@@ -43,10 +43,7 @@ struct PoseGraphParameters {
 struct PoseGraphSolution {
   std::vector<Eigen::Isometry3d> world_from_node;
   std::vector<double> edge_weights;  ///< per edge how much it counted, 0 to 1
-  /// Per pose its covariance, of a motion in the node's own frame applied before the transform: by the
-  /// covariances of edges and priors as they are weighed.
-  std::vector<MotionCovariance> covariances;
-  bool converged = false;  ///< whether the last step was below a micrometre and a microradian
+  bool converged = false;            ///< whether the last step was below a micrometre and a microradian
 };
 
 /** \brief The edges that agree with each other: a set of which no cycle is open, as large as it can be found.
@@ -80,5 +77,15 @@ PCL_FFT_GROUND_CORE_EXPORT PoseGraphSolution solvePoseGraph(const std::vector<Ei
                                                             const std::vector<PoseGraphEdge>& edges,
                                                             const std::vector<PosePrior>& priors,
                                                             const PoseGraphParameters& parameters = {});
+
+/** \brief How sure the poses of a solution are.
+ * \param solution solvePoseGraph() of the edges and priors
+ * \return per node the covariance of a motion in its own frame applied before the transform, by the
+ * covariances of edges and priors as they are weighed; nothing where these do not determine all poses \note
+ * One solution of the equations a node: of thousands of poses it takes longer than these themselves.
+ */
+PCL_FFT_GROUND_CORE_EXPORT std::vector<MotionCovariance> poseCovariances(
+    const PoseGraphSolution& solution, const std::vector<PoseGraphEdge>& edges,
+    const std::vector<PosePrior>& priors);
 
 }  // namespace pcl_fft_ground::core

@@ -130,9 +130,7 @@ struct SurveyPoses {
   std::vector<Eigen::Isometry3d> navigation;
   std::vector<Eigen::Isometry3d> chained;  ///< one pair of the chain after the other
   std::vector<Eigen::Isometry3d> global;   ///< all pairs and the navigation as one
-  /// Of `global`, each of a motion in the scan's own frame applied before its pose.
-  std::vector<MotionCovariance> covariances;
-  std::size_t edges = 0;  ///< aligned pairs that the global poses rest on
+  std::size_t edges = 0;                   ///< aligned pairs that the global poses rest on
   /// Of these, such as contradict the others: false. By consistentEdges(), or counting less than a quarter.
   std::size_t rejected_edges = 0;
 };
